@@ -1,0 +1,227 @@
+/* From balls to the mesh: the order of the stages of refinement. */
+#include "certificate.h"
+#include "memory.h"
+#include "mesh.h"
+#include "quality.h"
+#include "refine.h"
+#include "seeds.h"
+#include "status.h"
+
+#include <math.h>
+
+typedef struct build
+{
+  const mlim_field* field;
+  const mlim_options* options;
+  mlim_context* context;
+  mlim_oracle oracle;
+  mlim_components components;
+  mlim_refinement refinement;
+} build;
+
+static mlim_status check_balls(const mlim_balls* balls, mlim_context* context)
+{
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    const double* c = balls->centers + 3 * b;
+    if (!isfinite(c[0]) || !isfinite(c[1]) || !isfinite(c[2]) || !isfinite(balls->radii[b]) ||
+        !(balls->radii[b] > 0))
+    {
+      return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+        "Protecting ball %zu at (%g, %g, %g) has the radius %g; both have to be finite, the radius "
+        "above 0.",
+        b, c[0], c[1], c[2], balls->radii[b]);
+    }
+  }
+  return MLIM_OK;
+}
+
+/* Seeds are no closer to each other than facets of the wanted size would be. */
+static mlim_status seed(build* b)
+{
+  size_t count;
+  mlim_complex* complex = &b->refinement.complex;
+  const mlim_status status = mlim_seeds_on_components(
+    complex, &b->components, NULL, b->options->min_component_voxels, b->context, &count);
+  b->refinement.insertion_count += count;
+  return status != MLIM_OK
+           ? status
+           : mlim_seeds_on_sheets(complex, 2 * b->options->facet_size, b->context, &count);
+}
+
+/* Components that have no cell get their seeds again, denser than before, and refinement goes on. */
+static mlim_status rescue_components(build* b, int* is_complete)
+{
+  mlim_refinement* r = &b->refinement;
+  unsigned char* is_found = mlim_allocate(b->components.count, 1);
+  if (is_found == NULL)
+  {
+    return mlim_fail_memory(b->context, "the components of the labels");
+  }
+  size_t lost;
+  size_t count = 0;
+  mlim_certificate_find_components(
+    &r->complex, &b->components, b->options->min_component_voxels, is_found, &lost);
+  mlim_status status = MLIM_OK;
+  if (lost > 0)
+  {
+    for (size_t c = 0; c < b->components.count; ++c)
+    {
+      is_found[c] = !is_found[c];
+    }
+    status = mlim_seeds_on_components(
+      &r->complex, &b->components, is_found, b->options->min_component_voxels, b->context, &count);
+  }
+  *is_complete = count == 0;
+  mlim_release(is_found);
+  return status;
+}
+
+static mlim_status refine_all(build* b)
+{
+  enum
+  {
+    MAX_RESCUES = 4 /* seeds are the same each time, so more rounds would find no room for them */
+  };
+  mlim_status status = seed(b);
+  if (status == MLIM_OK)
+  {
+    status = mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context);
+  }
+  int is_complete = 0;
+  for (int round = 0; round < MAX_RESCUES && status == MLIM_OK && !is_complete; ++round)
+  {
+    status = mlim_refine_run(&b->refinement, MLIM_GOAL_QUALITY, b->context);
+    if (status == MLIM_OK)
+    {
+      status = rescue_components(b, &is_complete);
+    }
+  }
+  return status;
+}
+
+static void count_unresolved(const build* b, mlim_report* report)
+{
+  const mlim_complex* complex = &b->refinement.complex;
+  for (size_t f = 1; f < complex->facet_count; ++f)
+  {
+    const mlim_facet* facet = &complex->facets[f];
+    if (!facet->is_alive)
+    {
+      continue;
+    }
+    const mlim_verdict verdict = mlim_criteria_judge(complex, b->options, facet);
+    switch (verdict.badness)
+    {
+      case MLIM_BAD_CROSSINGS:
+        ++report->unresolved_crossing_count;
+        break;
+      case MLIM_BAD_FAR:
+      case MLIM_BAD_SHEET:
+        ++report->unresolved_patch_count;
+        break;
+      case MLIM_BAD_SIZE:
+        ++report->unresolved_size_count;
+        break;
+      case MLIM_BAD_DISTANCE:
+        ++report->unresolved_distance_count;
+        break;
+      case MLIM_BAD_RATIO:
+      case MLIM_BAD_DISK:
+      case MLIM_BAD_NONE:
+        break;
+    }
+    if (verdict.radius_edge_ratio > b->options->facet_radius_edge_ratio)
+    {
+      ++*(
+        verdict.has_ball ? &report->unresolved_ball_ratio_count : &report->unresolved_ratio_count);
+    }
+  }
+}
+
+static mlim_status read_and_measure(build* b, mlim_mesh* out)
+{
+  mlim_status status = mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, 0);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  mlim_edges edges = { 0 };
+  status = mlim_mesh_read(&b->refinement.complex, b->context, out);
+  if (status == MLIM_OK)
+  {
+    status = mlim_edges_create(out, b->context, &edges);
+  }
+  if (status == MLIM_OK)
+  {
+    status = mlim_quality_find_patches(out, &edges, b->context);
+  }
+  if (status == MLIM_OK)
+  {
+    mlim_quality_measure(out, &edges);
+    out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &edges);
+    out->report.insertion_count = b->refinement.insertion_count;
+    count_unresolved(b, &out->report);
+    status =
+      mlim_refine_count_disks(&b->refinement, b->context, &out->certificate.disk_failure_count);
+  }
+  mlim_edges_free(&edges);
+  if (status == MLIM_OK)
+  {
+    status =
+      mlim_certificate_measure(&b->refinement.complex, &b->components, b->options, b->context, out);
+  }
+  return status == MLIM_OK ? mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, 1) : status;
+}
+
+mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
+  const mlim_options* options, mlim_context* context, mlim_mesh* out)
+{
+  if (out == NULL || field == NULL || balls == NULL || options == NULL)
+  {
+    return mlim_fail(
+      context, MLIM_INVALID_ARGUMENT, "The field, the balls, the options or the result are NULL.");
+  }
+  *out = (mlim_mesh){ 0 };
+  mlim_options complete = *options;
+  mlim_status status = mlim_options_complete(field, context, &complete);
+  if (status == MLIM_OK)
+  {
+    status = check_balls(balls, context);
+  }
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  build b = { .field = field,
+    .options = &complete,
+    .context = context,
+    .oracle = {
+      .field = field, .tolerance = complete.crossing_tolerance, .mode = complete.oracle_mode } };
+  status = mlim_progress(context, MLIM_STAGE_SURFACE, 0);
+  if (status == MLIM_OK)
+  {
+    status = mlim_components_find(field, context, &b.components);
+  }
+  if (status == MLIM_OK)
+  {
+    status = mlim_refine_start(&b.refinement, &b.oracle, balls, &complete, context);
+  }
+  mlim_status outcome = status;
+  if (status == MLIM_OK)
+  {
+    outcome = refine_all(&b);
+  }
+  if (outcome == MLIM_OK || outcome == MLIM_VERTEX_LIMIT)
+  {
+    status = read_and_measure(&b, out);
+    outcome = status == MLIM_OK ? outcome : status;
+  }
+  mlim_refine_free(&b.refinement);
+  mlim_components_free(&b.components);
+  if (outcome != MLIM_OK && outcome != MLIM_VERTEX_LIMIT)
+  {
+    mlim_mesh_free(out);
+  }
+  return outcome;
+}

@@ -1,0 +1,18 @@
+/* How far a finished mesh is right: measured, not assumed. */
+#ifndef mlim_certificate_h
+#define mlim_certificate_h
+
+#include "complex.h"
+#include "components.h"
+#include "mlim.h"
+
+/* Which components (one byte each) have a cell of the complex; *lost counts those of at least
+   min_voxels that have none. */
+void mlim_certificate_find_components(const mlim_complex* complex,
+  const mlim_components* components, size_t min_voxels, unsigned char* is_found, size_t* lost);
+
+/* Fills labels, components, distances and volumes of mesh->certificate. */
+mlim_status mlim_certificate_measure(const mlim_complex* complex, const mlim_components* components,
+  const mlim_options* options, mlim_context* context, mlim_mesh* mesh);
+
+#endif

@@ -1,0 +1,487 @@
+#include "complex.h"
+
+#include "memory.h"
+#include "status.h"
+#include "vector.h"
+
+#include <math.h>
+#include <string.h>
+
+enum
+{
+  MAX_CROSSINGS = 16 /* on one dual; more of them change nothing: it is refined anyway */
+};
+
+mlim_status mlim_complex_create(
+  const mlim_oracle* oracle, const mlim_balls* balls, mlim_context* context, mlim_complex* out)
+{
+  *out = (mlim_complex){ .oracle = *oracle, .balls = balls };
+  mlim_status status =
+    mlim_delaunay_create(mlim_field_grid_of(oracle->field)->size, context, &out->delaunay);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  if (mlim_reserve(
+        &out->vertices, &out->vertex_capacity, MLIM_FAR_VERTICES, sizeof *out->vertices) ||
+      mlim_reserve(&out->facets, &out->facet_capacity, 1, sizeof *out->facets))
+  {
+    mlim_complex_free(out);
+    return mlim_fail_memory(context, "the triangulation");
+  }
+  out->facets[0] = (mlim_facet){ 0 };
+  out->facet_count = 1;
+  for (int32_t v = 0; v < MLIM_FAR_VERTICES; ++v)
+  {
+    out->vertices[v] = (mlim_vertex){ .kind = MLIM_VERTEX_FAR, .ball = -1, .cell = MLIM_NO_CELL };
+    mlim_delaunay_far_vertex(out->delaunay, v, out->vertices[v].point);
+  }
+  out->vertex_count = MLIM_FAR_VERTICES;
+  return MLIM_OK;
+}
+
+void mlim_complex_free(mlim_complex* complex)
+{
+  mlim_delaunay_free(complex->delaunay);
+  mlim_release(complex->vertices);
+  mlim_release(complex->cells);
+  mlim_release(complex->facets);
+  mlim_release(complex->free_facets);
+  mlim_release(complex->fresh);
+  mlim_release(complex->dirty);
+  *complex = (mlim_complex){ 0 };
+}
+
+void mlim_complex_facet_vertices(
+  const mlim_complex* complex, int32_t cell, int index, int32_t out[3])
+{
+  const int32_t* v = complex->cells[cell].vertices;
+  const int is_odd = index & 1;
+  out[0] = v[(index + 1) & 3];
+  out[1] = v[(index + (is_odd ? 3 : 2)) & 3];
+  out[2] = v[(index + (is_odd ? 2 : 3)) & 3];
+}
+
+static int has_code(const mlim_balls* balls, int32_t set, int32_t code)
+{
+  for (size_t k = balls->sets.offsets[set]; k < balls->sets.offsets[set + 1]; ++k)
+  {
+    if (balls->sets.labels[k] == code)
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+int mlim_complex_is_on_sheet(
+  const mlim_complex* complex, const mlim_vertex* vertex, const mlim_sheet* sheet)
+{
+  if (vertex->kind == MLIM_VERTEX_SURFACE)
+  {
+    return vertex->sheet.low == sheet->low && vertex->sheet.high == sheet->high &&
+           vertex->sheet.face == sheet->face;
+  }
+  if (vertex->kind == MLIM_VERTEX_FAR)
+  {
+    return 0;
+  }
+  const int32_t set = complex->balls->ball_sets[vertex->ball];
+  const mlim_field* field = complex->oracle.field;
+  if (sheet->face < 0)
+  {
+    return has_code(complex->balls, set, sheet->low) && has_code(complex->balls, set, sheet->high);
+  }
+  /* On a cap the outside is a side of the sheet, but names the set by the face. */
+  const int32_t outside = mlim_field_outside_label(field);
+  const int32_t region = sheet->low == outside ? sheet->high : sheet->low;
+  return has_code(complex->balls, set, region) &&
+         has_code(complex->balls, set, mlim_field_label_count(field) + sheet->face);
+}
+
+/* ---- records ---- */
+
+static int mark_dirty(mlim_complex* complex, int32_t vertex)
+{
+  mlim_vertex* v = &complex->vertices[vertex];
+  if (v->is_dirty || v->kind == MLIM_VERTEX_FAR)
+  {
+    return 0;
+  }
+  if (mlim_reserve(&complex->dirty, &complex->dirty_capacity, complex->dirty_count + 1,
+        sizeof *complex->dirty))
+  {
+    return 1;
+  }
+  v->is_dirty = 1;
+  complex->dirty[complex->dirty_count++] = vertex;
+  return 0;
+}
+
+static int mark_facet_dirty(mlim_complex* complex, int32_t cell, int index)
+{
+  int failed = 0;
+  for (int k = 1; k < 4; ++k)
+  {
+    failed |= mark_dirty(complex, complex->cells[cell].vertices[(index + k) & 3]);
+  }
+  return failed;
+}
+
+/* Room for a use in every slot is there: free_capacity grows with facet_capacity. */
+static void kill_record(mlim_complex* complex, int32_t record)
+{
+  mlim_facet* facet = &complex->facets[record];
+  facet->is_alive = 0;
+  ++facet->generation;
+  complex->free_facets[complex->free_count++] = record;
+}
+
+static int32_t new_record(mlim_complex* complex)
+{
+  if (complex->free_count > 0)
+  {
+    return complex->free_facets[--complex->free_count];
+  }
+  if (complex->facet_count >= INT32_MAX - 1 ||
+      mlim_reserve(&complex->facets, &complex->facet_capacity, complex->facet_count + 1,
+        sizeof *complex->facets) ||
+      mlim_reserve(&complex->free_facets, &complex->free_capacity, complex->facet_capacity,
+        sizeof *complex->free_facets) ||
+      mlim_reserve(
+        &complex->fresh, &complex->fresh_capacity, complex->facet_capacity, sizeof *complex->fresh))
+  {
+    return 0;
+  }
+  complex->facets[complex->facet_count] = (mlim_facet){ 0 };
+  return (int32_t)complex->facet_count++;
+}
+
+static int index_of_neighbor(const mlim_cell* cell, int32_t neighbor)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    if (cell->neighbors[k] == neighbor)
+    {
+      return k;
+    }
+  }
+  return 3;
+}
+
+/* The crossing farthest from the facet: Chew's rule. All its vertices are equally far in power. */
+static size_t farthest(const mlim_crossing* crossing, size_t count, const double vertex[3])
+{
+  size_t best = 0;
+  double most = -1;
+  for (size_t c = 0; c < count; ++c)
+  {
+    const double d = mlim_distance_squared(crossing[c].point, vertex);
+    if (d > most)
+    {
+      most = d;
+      best = c;
+    }
+  }
+  return best;
+}
+
+/* A segment that stays where the field is uniform: most same-label duals end here. */
+static int is_clear(const mlim_complex* complex, const mlim_cell* a, const mlim_cell* b)
+{
+  const double* spacing = mlim_field_grid_of(complex->oracle.field)->spacing;
+  double longest = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    longest = fmax(longest, fabs(a->center[k] - b->center[k]) / spacing[k]);
+  }
+  return longest <= a->clearance - 1 || longest <= b->clearance - 1;
+}
+
+static mlim_sheet sheet_of(const mlim_crossing* crossing)
+{
+  const int is_up = crossing->from < crossing->to;
+  return (mlim_sheet){ .low = is_up ? crossing->from : crossing->to,
+    .high = is_up ? crossing->to : crossing->from,
+    .face = crossing->face };
+}
+
+/* Looks along the dual of a facet and records what it crosses. Returns 1 when out of memory. */
+static int record_facet(mlim_complex* complex, int32_t cell, int index)
+{
+  mlim_cell* a = &complex->cells[cell];
+  if (a->neighbors[index] == MLIM_NO_CELL)
+  {
+    return 0;
+  }
+  mlim_cell* b = &complex->cells[a->neighbors[index]];
+  const int differs = a->label != b->label;
+  if (!differs && is_clear(complex, a, b))
+  {
+    return 0;
+  }
+  mlim_crossing crossing[MAX_CROSSINGS];
+  const size_t count =
+    mlim_oracle_crossings(&complex->oracle, a->center, b->center, MAX_CROSSINGS, crossing);
+  if (count == 0)
+  {
+    return 0;
+  }
+  const int32_t record = new_record(complex);
+  if (record == 0 || mlim_reserve(&complex->fresh, &complex->fresh_capacity,
+                       complex->fresh_count + 1, sizeof *complex->fresh))
+  {
+    return 1;
+  }
+  const double* near = complex->vertices[a->vertices[(index + 1) & 3]].point;
+  const mlim_crossing* far = &crossing[farthest(crossing, count, near)];
+  mlim_facet* facet = &complex->facets[record];
+  facet->sheet = sheet_of(far);
+  mlim_copy(far->point, facet->crossing);
+  facet->cell = cell;
+  facet->index = (unsigned char)index;
+  facet->is_alive = 1;
+  facet->is_multiple = count > 1 || !differs;
+  a->facets[index] = record;
+  b->facets[index_of_neighbor(b, cell)] = record;
+  complex->fresh[complex->fresh_count++] = record;
+  return mark_facet_dirty(complex, cell, index);
+}
+
+/* ---- insertion ---- */
+
+static void take_cell(mlim_complex* complex, const mlim_delaunay_cell* made)
+{
+  mlim_cell* cell = &complex->cells[made->id];
+  *cell = (mlim_cell){ 0 };
+  for (int k = 0; k < 4; ++k)
+  {
+    cell->vertices[k] = made->vertices[k];
+    cell->neighbors[k] = made->neighbors[k];
+    complex->vertices[made->vertices[k]].cell = made->id;
+  }
+  mlim_copy(made->center, cell->center);
+  int clearance;
+  cell->label = mlim_field_label_near(complex->oracle.field, cell->center, &clearance);
+  cell->clearance = clearance;
+}
+
+static int reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
+{
+  for (size_t k = 0; k < made->count; ++k)
+  {
+    const size_t needed = (size_t)made->cells[k].id + 1;
+    if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells))
+    {
+      return 1;
+    }
+    for (; complex->cell_count < needed; ++complex->cell_count)
+    {
+      complex->cells[complex->cell_count].vertices[0] = -1;
+    }
+  }
+  return 0;
+}
+
+mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
+  mlim_delaunay_start kind, mlim_context* context, double* power)
+{
+  *power = -1;
+  complex->pending = *vertex;
+  mlim_status status = mlim_delaunay_find(
+    complex->delaunay, vertex->point, vertex->weight, start, kind, context, &complex->zone);
+  if (status != MLIM_OK || complex->zone.count == 0 || complex->cell_count == 0)
+  {
+    *power = status == MLIM_OK && complex->zone.count > 0 ? INFINITY : -1;
+    return status;
+  }
+  double least = INFINITY;
+  for (size_t c = 0; c < complex->zone.count; ++c)
+  {
+    const mlim_cell* cell = &complex->cells[complex->zone.cells[c]];
+    for (int k = 0; k < 4; ++k)
+    {
+      const mlim_vertex* v = &complex->vertices[cell->vertices[k]];
+      least = fmin(least, mlim_distance_squared(v->point, vertex->point) - v->weight);
+    }
+  }
+  *power = fmax(least, 0);
+  return MLIM_OK;
+}
+
+/* Records inside the zone die; those on its surface go over to the cell outside. */
+static int empty_zone(mlim_complex* complex)
+{
+  int failed = 0;
+  const uint32_t stamp = ++complex->stamp;
+  for (size_t c = 0; c < complex->zone.count; ++c)
+  {
+    complex->cells[complex->zone.cells[c]].mark = stamp;
+  }
+  for (size_t c = 0; c < complex->zone.count; ++c)
+  {
+    const int32_t id = complex->zone.cells[c];
+    for (int k = 0; k < 4; ++k)
+    {
+      const int32_t record = complex->cells[id].facets[k];
+      if (record == 0 || !complex->facets[record].is_alive)
+      {
+        continue;
+      }
+      const int32_t other = complex->cells[id].neighbors[k];
+      if (complex->cells[other].mark == stamp)
+      {
+        failed |= mark_facet_dirty(complex, id, k);
+        kill_record(complex, record);
+        continue;
+      }
+      complex->facets[record].cell = other;
+      complex->facets[record].index = (unsigned char)index_of_neighbor(&complex->cells[other], id);
+    }
+  }
+  for (size_t c = 0; c < complex->zone.count; ++c)
+  {
+    complex->cells[complex->zone.cells[c]].vertices[0] = -1;
+  }
+  return failed;
+}
+
+/* Index in `cell` of the vertex that `other` does not have. */
+static int index_apart(const mlim_cell* cell, const mlim_cell* other)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    const int32_t v = cell->vertices[k];
+    if (v != other->vertices[0] && v != other->vertices[1] && v != other->vertices[2] &&
+        v != other->vertices[3])
+    {
+      return k;
+    }
+  }
+  return 3;
+}
+
+/* A facet between a new cell and one outside the zone: its record holds unless labels contradict. */
+static int inherit_facet(mlim_complex* complex, int32_t cell, int index)
+{
+  mlim_cell* a = &complex->cells[cell];
+  mlim_cell* b = &complex->cells[a->neighbors[index]];
+  const int j = index_apart(b, a);
+  b->neighbors[j] = cell;
+  const int32_t record = b->facets[j];
+  const int differs = a->label != b->label;
+  if (record == 0)
+  {
+    return differs ? record_facet(complex, cell, index) : 0;
+  }
+  mlim_facet* facet = &complex->facets[record];
+  const int32_t low = a->label < b->label ? a->label : b->label;
+  const int32_t high = a->label < b->label ? b->label : a->label;
+  if (!facet->is_multiple && differs && facet->sheet.low == low && facet->sheet.high == high)
+  {
+    a->facets[index] = record;
+    return 0;
+  }
+  int failed = mark_facet_dirty(complex, cell, index);
+  kill_record(complex, record);
+  b->facets[j] = 0;
+  if (facet->is_multiple || differs)
+  {
+    failed |= record_facet(complex, cell, index);
+  }
+  return failed;
+}
+
+static int update_cells(mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex)
+{
+  int failed = 0;
+  for (size_t k = 0; k < made->count && !failed; ++k)
+  {
+    const int32_t id = made->cells[k].id;
+    for (int i = 0; i < 4; ++i)
+    {
+      if (complex->cells[id].vertices[i] == vertex &&
+          complex->cells[id].neighbors[i] != MLIM_NO_CELL)
+      {
+        failed |= inherit_facet(complex, id, i);
+      }
+    }
+  }
+  for (size_t k = 0; k < made->count && !failed; ++k)
+  {
+    const int32_t id = made->cells[k].id;
+    for (int i = 0; i < 4; ++i)
+    {
+      if (complex->cells[id].vertices[i] != vertex && id < complex->cells[id].neighbors[i])
+      {
+        failed |= record_facet(complex, id, i);
+      }
+    }
+  }
+  return failed;
+}
+
+mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
+{
+  const int is_recorded = complex->cell_count > 0;
+  complex->fresh_count = 0;
+  if (mlim_reserve(&complex->vertices, &complex->vertex_capacity, complex->vertex_count + 1,
+        sizeof *complex->vertices) ||
+      (is_recorded && empty_zone(complex)))
+  {
+    return mlim_fail_memory(context, "the triangulation");
+  }
+  const int32_t vertex = (int32_t)complex->vertex_count++;
+  complex->vertices[vertex] = complex->pending;
+  complex->vertices[vertex].is_dirty = 0;
+  mlim_delaunay_cells made;
+  const mlim_status status = mlim_delaunay_fill(complex->delaunay, context, &made);
+  if (status != MLIM_OK || !is_recorded)
+  {
+    return status;
+  }
+  if (reserve_cells(complex, &made))
+  {
+    return mlim_fail_memory(context, "the triangulation");
+  }
+  for (size_t k = 0; k < made.count; ++k)
+  {
+    take_cell(complex, &made.cells[k]);
+  }
+  if (update_cells(complex, &made, vertex))
+  {
+    return mlim_fail_memory(context, "the restricted facets");
+  }
+  return MLIM_OK;
+}
+
+mlim_status mlim_complex_record_all(mlim_complex* complex, mlim_context* context)
+{
+  mlim_delaunay_cells all;
+  mlim_status status = mlim_delaunay_all(complex->delaunay, context, &all);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  if (reserve_cells(complex, &all))
+  {
+    return mlim_fail_memory(context, "the triangulation");
+  }
+  for (size_t k = 0; k < all.count; ++k)
+  {
+    take_cell(complex, &all.cells[k]);
+  }
+  complex->fresh_count = 0;
+  for (size_t k = 0; k < all.count; ++k)
+  {
+    const int32_t id = all.cells[k].id;
+    for (int i = 0; i < 4; ++i)
+    {
+      if (id < complex->cells[id].neighbors[i] && record_facet(complex, id, i))
+      {
+        return mlim_fail_memory(context, "the restricted facets");
+      }
+    }
+  }
+  return MLIM_OK;
+}

@@ -1,0 +1,112 @@
+/* The restricted Delaunay complex: the triangulation's cells with their labels, and a record of
+   every facet whose dual Voronoi edge crosses an interface. Dey, Janoos, Levine, section 3.2.
+
+   A cell has the label of its power centre. A facet is restricted if its two cells differ in label;
+   it is recorded also if they do not but its dual crosses an interface all the same.
+
+   An insertion only shortens the duals of the facets round its zone. So a dual that was found free
+   of crossings stays so, and a single crossing stays where it is or vanishes: its record passes from
+   the dead cell to the new one unless the labels contradict it. */
+#ifndef mlim_complex_h
+#define mlim_complex_h
+
+#include "delaunay.h"
+#include "oracle.h"
+
+/* A piece of interface: the labels of its two sides, the lower first, and the face of the box on
+   which it lies, -1 inside. */
+typedef struct mlim_sheet
+{
+  int32_t low, high;
+  int32_t face;
+} mlim_sheet;
+
+typedef enum mlim_vertex_kind
+{
+  MLIM_VERTEX_FAR,
+  MLIM_VERTEX_BALL,   /* a weighted point on a curve */
+  MLIM_VERTEX_SURFACE /* a point on a sheet */
+} mlim_vertex_kind;
+
+typedef struct mlim_vertex
+{
+  double point[3];
+  double weight;
+  int32_t cell;     /* one of the cells that have it */
+  int32_t ball;     /* index of its ball, -1 */
+  mlim_sheet sheet; /* of a surface vertex */
+  unsigned char kind;
+  unsigned char is_dirty; /* its star of restricted facets has changed */
+} mlim_vertex;
+
+typedef struct mlim_cell
+{
+  double center[3];
+  int32_t vertices[4];
+  int32_t neighbors[4];
+  int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
+  int32_t label;
+  int32_t clearance; /* mlim_field_label_near at the centre */
+  uint32_t mark;
+} mlim_cell;
+
+typedef struct mlim_facet
+{
+  double crossing[3];  /* the farthest one from the facet's vertices */
+  mlim_sheet sheet;    /* crossed there */
+  int32_t cell;        /* facet `index` of this cell */
+  uint32_t generation; /* counts the uses of this record */
+  unsigned char index;
+  unsigned char is_alive;
+  unsigned char is_multiple; /* crosses more often than the labels of its cells tell */
+} mlim_facet;
+
+typedef struct mlim_complex
+{
+  mlim_oracle oracle;
+  const mlim_balls* balls; /* borrowed */
+  mlim_delaunay* delaunay;
+  mlim_vertex* vertices;
+  size_t vertex_count, vertex_capacity;
+  mlim_cell* cells;
+  size_t cell_count, cell_capacity; /* ids ever used; dead ones have vertices[0] < 0 */
+  mlim_facet* facets;               /* record 0 is none */
+  size_t facet_count, facet_capacity;
+  int32_t* free_facets;
+  size_t free_count, free_capacity;
+  int32_t* fresh; /* records made by the last insertion */
+  size_t fresh_count, fresh_capacity;
+  int32_t* dirty; /* vertices with is_dirty */
+  size_t dirty_count, dirty_capacity;
+  mlim_delaunay_zone zone; /* of the last probe */
+  mlim_vertex pending;
+  uint32_t stamp;
+} mlim_complex;
+
+/* An empty complex round the box of the field. */
+mlim_status mlim_complex_create(
+  const mlim_oracle* oracle, const mlim_balls* balls, mlim_context* context, mlim_complex* out);
+void mlim_complex_free(mlim_complex* complex);
+
+/* Looks where a vertex would go. *power receives the smallest power distance of the point to all
+   vertices (a surface point's squared distance to the nearest one without weight), or -1 when it
+   cannot be inserted. start and kind as in mlim_delaunay_find. */
+mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
+  mlim_delaunay_start kind, mlim_context* context, double* power);
+
+/* Inserts the vertex of the last probe, relabels and records. fresh lists the new records. */
+mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
+
+/* Labels and records everything that is there. For after a first series of insertions; until then
+   commits keep only the cells. */
+mlim_status mlim_complex_record_all(mlim_complex* complex, mlim_context* context);
+
+/* The three vertices of facet `index` of a cell, so that its normal points out of the cell. */
+void mlim_complex_facet_vertices(
+  const mlim_complex* complex, int32_t cell, int index, int32_t out[3]);
+
+/* Whether a sheet passes through a vertex: it is the vertex's own, or belongs to its curve. */
+int mlim_complex_is_on_sheet(
+  const mlim_complex* complex, const mlim_vertex* vertex, const mlim_sheet* sheet);
+
+#endif

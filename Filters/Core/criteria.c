@@ -1,0 +1,141 @@
+#include "criteria.h"
+
+#include "vector.h"
+
+#include <math.h>
+
+/* A point inserted for size or shape keeps a power distance to a ball of at least this times the
+   ball's squared radius. At 1 the smallest angles near balls are about 24 degrees; at 1/16 there
+   are three times as many vertices and angles of 8 degrees. */
+static const double QUALITY_GUARD = 1;
+
+/* For topology a point may come nearer: above 0 it is outside the ball. At 1/4 the new edge is not
+   below half the ball's radius. */
+static const double TOPOLOGY_GUARD = 0.25;
+
+typedef struct triangle
+{
+  const mlim_vertex* vertex[3];
+  double edge_squared[3];
+  double circumcenter[3];
+  double radius_squared;
+  double shortest_squared;
+  double heaviest; /* largest weight */
+} triangle;
+
+static void measure(const mlim_complex* complex, const mlim_facet* facet, triangle* out)
+{
+  int32_t id[3];
+  mlim_complex_facet_vertices(complex, facet->cell, facet->index, id);
+  for (int k = 0; k < 3; ++k)
+  {
+    out->vertex[k] = &complex->vertices[id[k]];
+  }
+  const double* a = out->vertex[0]->point;
+  double u[3];
+  double v[3];
+  mlim_subtract(out->vertex[1]->point, a, u);
+  mlim_subtract(out->vertex[2]->point, a, v);
+  const double uu = mlim_dot(u, u);
+  const double vv = mlim_dot(v, v);
+  const double uv = mlim_dot(u, v);
+  const double gram = uu * vv - uv * uv; /* squared twice the area */
+  const double s = 0.5 * vv * (uu - uv) / gram;
+  const double t = 0.5 * uu * (vv - uv) / gram;
+  double r[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    r[k] = s * u[k] + t * v[k];
+    out->circumcenter[k] = a[k] + r[k];
+  }
+  out->radius_squared = mlim_dot(r, r);
+  out->edge_squared[0] = uu;
+  out->edge_squared[1] = vv;
+  out->edge_squared[2] = uu + vv - 2 * uv;
+  out->shortest_squared = fmin(uu, fmin(vv, out->edge_squared[2]));
+  out->heaviest =
+    fmax(out->vertex[0]->weight, fmax(out->vertex[1]->weight, out->vertex[2]->weight));
+}
+
+/* Radius of the surface Delaunay ball: the farthest vertex, since weights make them differ. */
+static double ball_radius(const triangle* t, const double crossing[3])
+{
+  double most = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    most = fmax(most, mlim_distance_squared(t->vertex[k]->point, crossing));
+  }
+  return sqrt(most);
+}
+
+static mlim_badness judge_topology(
+  const mlim_complex* complex, const mlim_facet* facet, const triangle* t)
+{
+  int is_foreign = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    if (t->vertex[k]->kind == MLIM_VERTEX_FAR)
+    {
+      return MLIM_BAD_FAR;
+    }
+    is_foreign |= !mlim_complex_is_on_sheet(complex, t->vertex[k], &facet->sheet);
+  }
+  return facet->is_multiple ? MLIM_BAD_CROSSINGS : is_foreign ? MLIM_BAD_SHEET : MLIM_BAD_NONE;
+}
+
+mlim_verdict mlim_criteria_judge(
+  const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet)
+{
+  triangle t;
+  measure(complex, facet, &t);
+  mlim_verdict verdict = { .badness = judge_topology(complex, facet, &t),
+    .excess = 1,
+    .has_ball = t.heaviest > 0,
+    .radius_edge_ratio = sqrt(t.radius_squared / t.shortest_squared) };
+  if (verdict.badness != MLIM_BAD_NONE)
+  {
+    return verdict;
+  }
+  const struct
+  {
+    mlim_badness badness;
+    double measure;
+    double bound;
+  } rows[] = {
+    { MLIM_BAD_SIZE, ball_radius(&t, facet->crossing), options->facet_size },
+    { MLIM_BAD_DISTANCE, mlim_distance(t.circumcenter, facet->crossing), options->facet_distance },
+    { MLIM_BAD_RATIO, verdict.radius_edge_ratio, options->facet_radius_edge_ratio },
+  };
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
+  {
+    if (!(rows[k].measure <= rows[k].bound))
+    {
+      verdict.badness = rows[k].badness;
+      verdict.excess = rows[k].measure / rows[k].bound;
+      break;
+    }
+  }
+  return verdict;
+}
+
+int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* options,
+  const mlim_facet* facet, mlim_badness badness)
+{
+  triangle t;
+  measure(complex, facet, &t);
+  /* The crossing is on the facet's dual, so no vertex is nearer in power than these three. */
+  const double power =
+    mlim_distance_squared(t.vertex[0]->point, facet->crossing) - t.vertex[0]->weight;
+  const double least = options->smallest_distance * options->smallest_distance;
+  if (power < least)
+  {
+    return 0;
+  }
+  const int is_topology = badness < MLIM_BAD_SIZE;
+  if (power < (is_topology ? TOPOLOGY_GUARD : QUALITY_GUARD) * t.heaviest)
+  {
+    return 0;
+  }
+  /* Near a ball shape alone never makes an edge shorter than the facet has. */
+  return badness != MLIM_BAD_RATIO || t.heaviest == 0 || power >= t.shortest_squared;
+}

@@ -1,0 +1,36 @@
+/* What makes a restricted facet bad, in the order in which it is mended: topology first, then size,
+   distance and shape. Dey, Janoos, Levine, sections 3.3 and 4.2. */
+#ifndef mlim_criteria_h
+#define mlim_criteria_h
+
+#include "complex.h"
+
+typedef enum mlim_badness
+{
+  MLIM_BAD_FAR,       /* has a vertex that stands for the outside */
+  MLIM_BAD_CROSSINGS, /* its dual crosses more often than the labels of its cells tell */
+  MLIM_BAD_SHEET,     /* a vertex is not on the sheet that it crosses */
+  MLIM_BAD_DISK,      /* a vertex's restricted facets do not form a disk or half-disks */
+  MLIM_BAD_SIZE,      /* from here on quality; before it topology */
+  MLIM_BAD_DISTANCE,
+  MLIM_BAD_RATIO,
+  MLIM_BAD_NONE
+} mlim_badness;
+
+typedef struct mlim_verdict
+{
+  mlim_badness badness; /* the first criterion that fails, never MLIM_BAD_DISK */
+  double excess;        /* measure / bound of that criterion; 1 for topology */
+  int has_ball;         /* a vertex is a ball */
+  double radius_edge_ratio;
+} mlim_verdict;
+
+mlim_verdict mlim_criteria_judge(
+  const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet);
+
+/* Whether the facet's crossing may be inserted for that reason: outside the protecting balls and no
+   closer to another vertex than the smallest distance. Quality gives way near balls. */
+int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* options,
+  const mlim_facet* facet, mlim_badness badness);
+
+#endif

@@ -1,0 +1,269 @@
+#include "disk.h"
+
+#include "memory.h"
+#include "status.h"
+
+#include <stdlib.h>
+
+mlim_status mlim_ball_links_create(
+  const mlim_balls* balls, mlim_context* context, mlim_ball_links* out)
+{
+  out->offsets = mlim_allocate_zeroed(balls->ball_count + 2, sizeof *out->offsets);
+  out->neighbors = mlim_allocate(2 * balls->edge_count, sizeof *out->neighbors);
+  if (out->offsets == NULL || out->neighbors == NULL)
+  {
+    mlim_ball_links_free(out);
+    return mlim_fail_memory(context, "the balls' neighbours");
+  }
+  for (size_t e = 0; e < 2 * balls->edge_count; ++e)
+  {
+    ++out->offsets[balls->edges[e] + 2];
+  }
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    out->offsets[b + 2] += out->offsets[b + 1];
+  }
+  for (size_t e = 0; e < balls->edge_count; ++e)
+  {
+    const int32_t* edge = balls->edges + 2 * e;
+    out->neighbors[out->offsets[edge[0] + 1]++] = edge[1];
+    out->neighbors[out->offsets[edge[1] + 1]++] = edge[0];
+  }
+  return MLIM_OK;
+}
+
+void mlim_ball_links_free(mlim_ball_links* links)
+{
+  mlim_release(links->offsets);
+  mlim_release(links->neighbors);
+  *links = (mlim_ball_links){ 0 };
+}
+
+void mlim_star_free(mlim_star* star)
+{
+  mlim_release(star->cells);
+  mlim_release(star->edges);
+  mlim_release(star->facets);
+  mlim_release(star->parents);
+  mlim_release(star->link);
+  *star = (mlim_star){ 0 };
+}
+
+/* ---- the star ---- */
+
+static int push(int32_t** array, size_t* count, size_t* capacity, int32_t value)
+{
+  if (mlim_reserve(array, capacity, *count + 1, sizeof **array))
+  {
+    return 1;
+  }
+  (*array)[(*count)++] = value;
+  return 0;
+}
+
+/* A facet between two labels; records of equal labels are no part of the complex. */
+static int is_restricted(const mlim_complex* complex, const mlim_cell* cell, int index)
+{
+  const int32_t other = cell->neighbors[index];
+  return cell->facets[index] != 0 && other != MLIM_NO_CELL &&
+         complex->cells[other].label != cell->label;
+}
+
+static int visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_star* star)
+{
+  int failed = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const mlim_cell* cell = &complex->cells[id];
+    const int32_t other = cell->neighbors[k];
+    if (cell->vertices[k] == vertex || other == MLIM_NO_CELL)
+    {
+      continue;
+    }
+    if (cell->facets[k] != 0 && id < other)
+    {
+      failed |= push(&star->facets, &star->facet_count, &star->facet_capacity, cell->facets[k]);
+    }
+    if (is_restricted(complex, cell, k) && id < other)
+    {
+      for (int j = 0; j < 4; ++j)
+      {
+        if (j != k && cell->vertices[j] != vertex)
+        {
+          failed |= push(&star->edges, &star->edge_count, &star->edge_capacity, cell->vertices[j]);
+        }
+      }
+    }
+    if (complex->cells[other].mark != complex->stamp)
+    {
+      complex->cells[other].mark = complex->stamp;
+      failed |= push(&star->cells, &star->cell_count, &star->cell_capacity, other);
+    }
+  }
+  return failed;
+}
+
+static int gather(mlim_complex* complex, int32_t vertex, mlim_star* star)
+{
+  star->cell_count = star->edge_count = star->facet_count = 0;
+  const int32_t first = complex->vertices[vertex].cell;
+  complex->cells[first].mark = ++complex->stamp;
+  int failed = push(&star->cells, &star->cell_count, &star->cell_capacity, first);
+  for (size_t c = 0; c < star->cell_count && !failed; ++c)
+  {
+    failed = visit_cell(complex, star->cells[c], vertex, star);
+  }
+  return failed;
+}
+
+/* ---- the link as a graph ---- */
+
+static int compare_ids(const void* a, const void* b)
+{
+  const int32_t x = *(const int32_t*)a;
+  const int32_t y = *(const int32_t*)b;
+  return (x > y) - (x < y);
+}
+
+static int collect_link(mlim_star* star)
+{
+  star->link_count = 0;
+  for (size_t e = 0; e < star->edge_count; ++e)
+  {
+    if (push(&star->link, &star->link_count, &star->link_capacity, star->edges[e]))
+    {
+      return 1;
+    }
+  }
+  qsort(star->link, star->link_count, sizeof *star->link, compare_ids);
+  size_t kept = 0;
+  for (size_t k = 0; k < star->link_count; ++k)
+  {
+    if (kept == 0 || star->link[kept - 1] != star->link[k])
+    {
+      star->link[kept++] = star->link[k];
+    }
+  }
+  star->link_count = kept;
+  /* Two numbers a link vertex: parent, degree. */
+  return mlim_reserve(&star->parents, &star->parent_capacity, 2 * kept, sizeof *star->parents);
+}
+
+static size_t place_of(const mlim_star* star, int32_t vertex)
+{
+  size_t low = 0;
+  size_t high = star->link_count;
+  while (low + 1 < high)
+  {
+    const size_t middle = (low + high) / 2;
+    low = star->link[middle] <= vertex ? middle : low;
+    high = star->link[middle] <= vertex ? high : middle;
+  }
+  return low;
+}
+
+static int32_t root_of(int32_t* parents, int32_t k)
+{
+  while (parents[k] != k)
+  {
+    parents[k] = parents[parents[k]];
+    k = parents[k];
+  }
+  return k;
+}
+
+static void join_link(mlim_star* star)
+{
+  int32_t* degree = star->parents + star->link_count;
+  for (size_t k = 0; k < star->link_count; ++k)
+  {
+    star->parents[k] = (int32_t)k;
+    degree[k] = 0;
+  }
+  for (size_t e = 0; e + 1 < star->edge_count; e += 2)
+  {
+    const int32_t a = (int32_t)place_of(star, star->edges[e]);
+    const int32_t b = (int32_t)place_of(star, star->edges[e + 1]);
+    ++degree[a];
+    ++degree[b];
+    const int32_t ra = root_of(star->parents, a);
+    const int32_t rb = root_of(star->parents, b);
+    star->parents[ra < rb ? rb : ra] = ra < rb ? ra : rb;
+  }
+}
+
+static int is_curve_neighbor(
+  const mlim_complex* complex, const mlim_ball_links* links, int32_t ball, int32_t vertex)
+{
+  const int32_t other = complex->vertices[vertex].ball;
+  if (ball < 0 || other < 0)
+  {
+    return 0;
+  }
+  for (size_t k = links->offsets[ball]; k < links->offsets[ball + 1]; ++k)
+  {
+    if (links->neighbors[k] == other)
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* A sheet's vertex has one cycle for its link. At a ball the link's branching points are exactly its
+   neighbours on curves, each of them is there, and every part of the link hangs on one. */
+static int holds(
+  const mlim_complex* complex, const mlim_ball_links* links, int32_t vertex, mlim_star* star)
+{
+  join_link(star);
+  const int32_t* degree = star->parents + star->link_count;
+  const int32_t ball = complex->vertices[vertex].ball;
+  size_t found = 0;
+  size_t part_count = 0;
+  for (size_t k = 0; k < star->link_count; ++k)
+  {
+    const int is_neighbor = is_curve_neighbor(complex, links, ball, star->link[k]);
+    found += (size_t)is_neighbor;
+    if (is_neighbor ? degree[k] < 2 : degree[k] != 2)
+    {
+      return 0;
+    }
+    part_count += star->parents[k] == (int32_t)k;
+  }
+  if (ball < 0)
+  {
+    return part_count == 1;
+  }
+  size_t anchored = 0;
+  for (size_t k = 0; k < star->link_count; ++k)
+  {
+    if (star->parents[k] != (int32_t)k)
+    {
+      continue;
+    }
+    int has_neighbor = 0;
+    for (size_t j = 0; j < star->link_count && !has_neighbor; ++j)
+    {
+      has_neighbor = root_of(star->parents, (int32_t)j) == (int32_t)k &&
+                     is_curve_neighbor(complex, links, ball, star->link[j]);
+    }
+    anchored += (size_t)has_neighbor;
+  }
+  return anchored == part_count && found == links->offsets[ball + 1] - links->offsets[ball];
+}
+
+mlim_status mlim_disk_check(mlim_complex* complex, const mlim_ball_links* links, int32_t vertex,
+  mlim_star* star, mlim_context* context, mlim_disk* out)
+{
+  *out = MLIM_DISK_EMPTY;
+  if (gather(complex, vertex, star) || collect_link(star))
+  {
+    return mlim_fail_memory(context, "a vertex's star");
+  }
+  if (star->edge_count > 0 || complex->vertices[vertex].ball >= 0)
+  {
+    *out = star->edge_count > 0 && holds(complex, links, vertex, star) ? MLIM_DISK_HOLDS
+                                                                       : MLIM_DISK_FAILS;
+  }
+  return MLIM_OK;
+}

@@ -1,0 +1,47 @@
+/* The disk condition: the restricted facets round a vertex form one disk on a sheet, half-disks
+   along the curve at a curve's vertex, and a fan between the curves at a junction. */
+#ifndef mlim_disk_h
+#define mlim_disk_h
+
+#include "complex.h"
+
+/* Neighbours of each ball on its curves. */
+typedef struct mlim_ball_links
+{
+  size_t* offsets;    /* ball_count + 1 */
+  int32_t* neighbors; /* balls */
+} mlim_ball_links;
+
+mlim_status mlim_ball_links_create(
+  const mlim_balls* balls, mlim_context* context, mlim_ball_links* out);
+void mlim_ball_links_free(mlim_ball_links* links);
+
+/* Memory that checks use again and again; all 0 to begin with. */
+typedef struct mlim_star
+{
+  int32_t* cells;
+  size_t cell_count, cell_capacity;
+  int32_t* edges; /* the facets' edges opposite to the vertex, 2 vertices each */
+  size_t edge_count, edge_capacity;
+  int32_t* facets; /* records in the star */
+  size_t facet_count, facet_capacity;
+  int32_t* parents; /* union-find over the link's vertices */
+  size_t parent_capacity;
+  int32_t* link; /* the link's vertices, ascending */
+  size_t link_count, link_capacity;
+} mlim_star;
+
+void mlim_star_free(mlim_star* star);
+
+typedef enum mlim_disk
+{
+  MLIM_DISK_HOLDS,
+  MLIM_DISK_EMPTY, /* the vertex has no restricted facet */
+  MLIM_DISK_FAILS
+} mlim_disk;
+
+/* Checks one vertex; star->facets receives its records. */
+mlim_status mlim_disk_check(mlim_complex* complex, const mlim_ball_links* links, int32_t vertex,
+  mlim_star* star, mlim_context* context, mlim_disk* out);
+
+#endif

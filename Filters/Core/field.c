@@ -1,0 +1,156 @@
+#include "field.h"
+
+#include "field_index.h"
+#include "memory.h"
+
+#include <math.h>
+
+void mlim_field_free(mlim_field* field)
+{
+  if (field == NULL)
+  {
+    return;
+  }
+  for (size_t z = 0; field->layers != NULL && z < field->layer_count; ++z)
+  {
+    mlim_release(field->layers[z].words);
+    mlim_release(field->layers[z].pool);
+  }
+  mlim_release(field->layers);
+  mlim_release(field->coarse);
+  mlim_release(field->winners);
+  mlim_release(field->ids);
+  mlim_release(field);
+}
+
+int32_t mlim_field_label_count(const mlim_field* field)
+{
+  return field->label_count;
+}
+
+int32_t mlim_field_label_id(const mlim_field* field, int32_t label)
+{
+  return label >= 0 && label < field->label_count ? field->ids[label] : 0;
+}
+
+int32_t mlim_field_outside_label(const mlim_field* field)
+{
+  return field->outside_label;
+}
+
+const mlim_field_grid* mlim_field_grid_of(const mlim_field* field)
+{
+  return &field->grid;
+}
+
+size_t mlim_field_max_candidates(const mlim_field* field)
+{
+  return field->max_candidates < 2 ? 2 : field->max_candidates;
+}
+
+int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3])
+{
+  return field->winners[(size_t)point[0] +
+                        (size_t)field->grid.dims[0] *
+                          ((size_t)point[1] + (size_t)field->grid.dims[1] * (size_t)point[2])];
+}
+
+mlim_candidates mlim_field_cell(
+  const mlim_field* field, const int32_t cell[3], const mlim_cell_buffer* buffer)
+{
+  const uint32_t word = field_cell_word(field, cell, NULL);
+  mlim_candidates out = { .count = 1, .labels = buffer->labels, .values = NULL };
+  if (!(word & (uint32_t)MIXED))
+  {
+    buffer->labels[0] = (uint16_t)word;
+    return out;
+  }
+  const uint32_t* entry = field_pool_entry(field, cell, word);
+  out.values = buffer->values;
+  if (!(word & (uint32_t)MANY))
+  {
+    out.count = 2;
+    buffer->labels[0] = (uint16_t)(entry[0] & 0xffffu);
+    buffer->labels[1] = (uint16_t)(entry[0] >> 16);
+    for (int c = 0; c < 8; ++c)
+    {
+      const float difference = field_float(entry[1 + c]);
+      buffer->values[c] = difference < 0 ? difference : 0;
+      buffer->values[8 + c] = difference > 0 ? -difference : 0;
+    }
+    return out;
+  }
+  out.count = (int32_t)entry[0];
+  for (int32_t n = 0; n < out.count; ++n)
+  {
+    buffer->labels[n] = (uint16_t)entry[1 + n];
+  }
+  memcpy(buffer->values, entry + 1 + out.count, 8 * (size_t)out.count * sizeof(float));
+  return out;
+}
+
+/* Trilinear interpolation of corner values, in double. */
+static double trilinear(const uint32_t* values, const double at[3])
+{
+  double edge[4];
+  for (int e = 0; e < 4; ++e)
+  {
+    const double low = (double)field_float(values[2 * e]);
+    edge[e] = low + at[0] * ((double)field_float(values[2 * e + 1]) - low);
+  }
+  const double low = edge[0] + at[1] * (edge[1] - edge[0]);
+  const double high = edge[2] + at[1] * (edge[3] - edge[2]);
+  return low + at[2] * (high - low);
+}
+
+static int32_t mixed_label(const uint32_t* entry, uint32_t word, const double at[3])
+{
+  if (!(word & (uint32_t)MANY))
+  {
+    return trilinear(entry + 1, at) >= 0 ? (int32_t)(entry[0] & 0xffffu)
+                                         : (int32_t)(entry[0] >> 16);
+  }
+  const uint32_t count = entry[0];
+  double best = trilinear(entry + 1 + count, at);
+  uint32_t winner = 0;
+  for (uint32_t n = 1; n < count; ++n)
+  {
+    const double value = trilinear(entry + 1 + count + 8 * (size_t)n, at);
+    if (value > best)
+    {
+      best = value;
+      winner = n;
+    }
+  }
+  return (int32_t)entry[1 + winner];
+}
+
+int32_t mlim_field_label_near(const mlim_field* field, const double point[3], int* clearance)
+{
+  int32_t cell[3];
+  double at[3];
+  *clearance = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    if (!(point[k] >= 0 && point[k] <= field->grid.size[k]))
+    {
+      return field->outside_label;
+    }
+    const double g = point[k] * field->inverse_spacing[k];
+    cell[k] = (int32_t)g;
+    cell[k] = cell[k] >= field->grid.cells[k] ? field->grid.cells[k] - 1 : cell[k];
+    at[k] = g - cell[k];
+  }
+  const uint32_t word = field_cell_word(field, cell, clearance);
+  if (!(word & (uint32_t)MIXED))
+  {
+    return (int32_t)word;
+  }
+  return mixed_label(field_pool_entry(field, cell, word), word, at);
+}
+
+int32_t mlim_field_label(const mlim_field* field, const double point[3])
+{
+  int clearance;
+  return mlim_field_label_near(field, point, &clearance);
+}

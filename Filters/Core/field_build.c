@@ -1,0 +1,542 @@
+/* Builds the field's index from the arrays: the winner at every grid point, the candidates of every
+   cell whose corners do not agree, and the clearances for skipping empty space. */
+#include "field_index.h"
+#include "memory.h"
+#include "samples.h"
+#include "status.h"
+
+#include <math.h>
+
+/* ---- winners ---- */
+
+typedef struct build_job
+{
+  const mlim_samples* samples;
+  mlim_field* field;
+  uint8_t* distance; /* a cell: Chebyshev distance to the nearest mixed one or to the outside */
+  int has_failed;
+} build_job;
+
+static int win_slice(const mlim_samples* samples, size_t z, uint16_t* winners)
+{
+  const size_t nx = (size_t)samples->grid->dims[0];
+  const size_t ny = (size_t)samples->grid->dims[1];
+  double* best = mlim_allocate(2 * nx, sizeof *best);
+  if (best == NULL)
+  {
+    return 1;
+  }
+  double* value = best + nx;
+  const int32_t labels = samples->label_count + (samples->outside_label == samples->label_count &&
+                                                  samples->grid->is_outside != NULL);
+  for (size_t y = 0; y < ny; ++y)
+  {
+    const size_t first = nx * (y + ny * z);
+    uint16_t* win = winners + first;
+    mlim_samples_row(samples, 0, first, nx, best);
+    memset(win, 0, nx * sizeof *win);
+    for (int32_t l = 1; l < labels; ++l)
+    {
+      mlim_samples_row(samples, l, first, nx, value);
+      for (size_t x = 0; x < nx; ++x)
+      {
+        const int is_better = value[x] > best[x];
+        best[x] = is_better ? value[x] : best[x];
+        win[x] = is_better ? (uint16_t)l : win[x];
+      }
+    }
+  }
+  mlim_release(best);
+  return 0;
+}
+
+static void win_body(void* data, size_t begin, size_t end)
+{
+  build_job* job = (build_job*)data;
+  for (size_t z = begin; z < end; ++z)
+  {
+    if (win_slice(job->samples, z, job->field->winners))
+    {
+      job->has_failed = 1;
+    }
+  }
+}
+
+/* ---- candidates of one mixed cell ---- */
+
+/* The corners' winners and their values, against which every label has to stand. */
+typedef struct rivals
+{
+  int32_t count;
+  int32_t labels[8];
+  double values[8][8];
+  double best[8]; /* the largest value at each corner */
+} rivals;
+
+static void read_corners(const build_job* job, int32_t label, size_t first, double out[8])
+{
+  mlim_samples_corners(job->samples, label, first, out);
+}
+
+static void find_rivals(const build_job* job, size_t first, const size_t corner[8], rivals* out)
+{
+  out->count = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    const int32_t label = job->field->winners[first + corner[c]];
+    int32_t r = 0;
+    while (r < out->count && out->labels[r] != label)
+    {
+      ++r;
+    }
+    if (r == out->count)
+    {
+      out->labels[r] = label;
+      read_corners(job, label, first, out->values[r]);
+      ++out->count;
+    }
+    out->best[c] = out->values[r][c];
+  }
+}
+
+/* Label l stays unless one rival beats it at all corners (ties: the lower label beats). */
+static int is_candidate(const rivals* rival, int32_t label, const double value[8])
+{
+  for (int32_t r = 0; r < rival->count; ++r)
+  {
+    if (rival->labels[r] == label)
+    {
+      continue;
+    }
+    const double* v = rival->values[r];
+    const int wins_ties = rival->labels[r] < label;
+    int c = 0;
+    while (c < 8 && (v[c] > value[c] || (wins_ties && v[c] == value[c])))
+    {
+      ++c;
+    }
+    if (c == 8)
+    {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+static uint32_t float_word(double value)
+{
+  const float f = (float)value;
+  uint32_t word;
+  memcpy(&word, &f, sizeof word);
+  return word;
+}
+
+/* Appends the candidates of a cell to the layer's pool; the result is the cell's word. */
+static uint32_t add_mixed(
+  const build_job* job, field_layer* layer, size_t first, const size_t corner[8])
+{
+  const mlim_samples* samples = job->samples;
+  rivals rival;
+  find_rivals(job, first, corner, &rival);
+  const size_t start = layer->pool_count;
+  const size_t labels = (size_t)job->field->label_count;
+  if (start + 1 + 9 * labels > DETAIL ||
+      mlim_reserve(&layer->pool, &layer->pool_capacity, start + 1 + 9 * labels, sizeof(uint32_t)))
+  {
+    layer->has_failed = 1;
+    return 0;
+  }
+  uint32_t* entry = layer->pool + start;
+  uint32_t count = 0;
+  uint32_t* names = entry + 1;
+  uint32_t* values = entry + 1 + labels;
+  for (int32_t l = 0; l < (int32_t)labels; ++l)
+  {
+    if (l == samples->label_count && samples->grid->is_outside == NULL)
+    {
+      continue; /* the outside has no values of its own */
+    }
+    double value[8];
+    read_corners(job, l, first, value);
+    if (!is_candidate(&rival, l, value))
+    {
+      continue;
+    }
+    names[count] = (uint32_t)l;
+    for (int c = 0; c < 8; ++c)
+    {
+      values[8 * count + (uint32_t)c] = float_word((value[c] - rival.best[c]) * samples->scale);
+    }
+    ++count;
+  }
+  if (count == 2)
+  {
+    uint32_t packed[PAIR_WORDS];
+    packed[0] = names[0] | names[1] << 16;
+    for (int c = 0; c < 8; ++c)
+    {
+      /* One of the two is the best and has 0, so the difference loses nothing. */
+      packed[1 + c] =
+        float_word((double)field_float(values[c]) - (double)field_float(values[8 + c]));
+    }
+    memcpy(entry, packed, sizeof packed);
+    layer->pool_count = start + PAIR_WORDS;
+    layer->max_candidates = layer->max_candidates < 2 ? 2 : layer->max_candidates;
+    return (uint32_t)MIXED | (uint32_t)start;
+  }
+  entry[0] = count;
+  memmove(entry + 1 + count, values, 8 * (size_t)count * sizeof *values);
+  layer->pool_count = start + 1 + 9 * (size_t)count;
+  layer->max_candidates = layer->max_candidates < count ? count : layer->max_candidates;
+  return (uint32_t)MIXED | (uint32_t)MANY | (uint32_t)start;
+}
+
+/* ---- bricks ---- */
+
+static void corner_offsets(const mlim_field* field, size_t corner[8])
+{
+  const size_t nx = (size_t)field->grid.dims[0];
+  const size_t slice = nx * (size_t)field->grid.dims[1];
+  for (size_t c = 0; c < 8; ++c)
+  {
+    corner[c] = (c & 1) + nx * (c >> 1 & 1) + slice * (c >> 2 & 1);
+  }
+}
+
+static void fill_brick(const build_job* job, const int32_t brick[3], const size_t corner[8])
+{
+  mlim_field* field = job->field;
+  field_layer* layer = &field->layers[brick[2]];
+  uint32_t words[BRICK_CELLS] = { 0 };
+  uint32_t uniform = UINT32_MAX;
+  int is_plain = 1;
+  for (uint32_t slot = 0; slot < BRICK_CELLS; ++slot)
+  {
+    const int32_t cell[3] = { 4 * brick[0] + (int32_t)(slot & 3),
+      4 * brick[1] + (int32_t)(slot >> 2 & 3), 4 * brick[2] + (int32_t)(slot >> 4) };
+    if (cell[0] >= field->grid.cells[0] || cell[1] >= field->grid.cells[1] ||
+        cell[2] >= field->grid.cells[2])
+    {
+      continue;
+    }
+    const size_t first =
+      (size_t)cell[0] + (size_t)field->grid.dims[0] *
+                          ((size_t)cell[1] + (size_t)field->grid.dims[1] * (size_t)cell[2]);
+    const uint16_t* win = field->winners + first;
+    int differs = 0;
+    for (int c = 1; c < 8; ++c)
+    {
+      differs |= win[corner[c]] ^ win[0];
+    }
+    words[slot] = differs ? add_mixed(job, layer, first, corner) : win[0];
+    if (layer->has_failed)
+    {
+      return;
+    }
+    uniform = uniform == UINT32_MAX ? words[slot] : uniform;
+    is_plain &= !differs && words[slot] == uniform;
+    const size_t at =
+      (size_t)cell[0] + (size_t)field->grid.cells[0] *
+                          ((size_t)cell[1] + (size_t)field->grid.cells[1] * (size_t)cell[2]);
+    job->distance[at] = differs ? 0 : MAX_CLEARANCE;
+  }
+  uint32_t* coarse =
+    &field->coarse[(size_t)brick[0] +
+                   (size_t)field->bricks[0] *
+                     ((size_t)brick[1] + (size_t)field->bricks[1] * (size_t)brick[2])];
+  if (is_plain)
+  {
+    *coarse = uniform;
+    return;
+  }
+  if (mlim_reserve(&layer->words, &layer->brick_capacity, layer->brick_count + 1, sizeof words))
+  {
+    layer->has_failed = 1;
+    return;
+  }
+  memcpy(layer->words + layer->brick_count * BRICK_CELLS, words, sizeof words);
+  *coarse = (uint32_t)MIXED | (uint32_t)layer->brick_count;
+  ++layer->brick_count;
+}
+
+static void layer_body(void* data, size_t begin, size_t end)
+{
+  const build_job* job = (const build_job*)data;
+  size_t corner[8];
+  corner_offsets(job->field, corner);
+  for (size_t z = begin; z < end; ++z)
+  {
+    field_layer* layer = &job->field->layers[z];
+    for (int32_t y = 0; y < job->field->bricks[1] && !layer->has_failed; ++y)
+    {
+      for (int32_t x = 0; x < job->field->bricks[0] && !layer->has_failed; ++x)
+      {
+        fill_brick(job, (const int32_t[3]){ x, y, (int32_t)z }, corner);
+      }
+    }
+  }
+}
+
+/* ---- clearances: two chamfer passes, exact for the Chebyshev distance ---- */
+
+/* The outside counts as mixed, so that a clearance never leaves the box. */
+static void chamfer(uint8_t* distance, const int32_t dims[3])
+{
+  const int64_t nx = dims[0];
+  const int64_t ny = dims[1];
+  const int64_t nz = dims[2];
+  for (int pass = 0; pass < 2; ++pass)
+  {
+    const int64_t step = pass == 0 ? -1 : 1;
+    for (int64_t i = 0; i < ny * nz; ++i)
+    {
+      const int64_t row = pass == 0 ? i : ny * nz - 1 - i;
+      const int64_t y = row % ny;
+      const int64_t z = row / ny;
+      uint8_t* here = distance + row * nx;
+      const int64_t others[4][2] = { { -1, step }, { 0, step }, { 1, step }, { step, 0 } };
+      for (int n = 0; n < 4; ++n)
+      {
+        const int64_t oy = y + others[n][0];
+        const int64_t oz = z + others[n][1];
+        const int is_in = oy >= 0 && oy < ny && oz >= 0 && oz < nz;
+        const uint8_t* other = is_in ? distance + (oz * ny + oy) * nx : NULL;
+        for (int64_t x = 0; x < nx; ++x)
+        {
+          int least = 0;
+          if (other != NULL)
+          {
+            const int left = x > 0 ? other[x - 1] : 0;
+            const int right = x + 1 < nx ? other[x + 1] : 0;
+            least = other[x] < left ? other[x] : left;
+            least = right < least ? right : least;
+          }
+          here[x] = here[x] > least + 1 ? (uint8_t)(least + 1) : here[x];
+        }
+      }
+      for (int64_t k = 0; k < nx; ++k)
+      {
+        const int64_t x = pass == 0 ? k : nx - 1 - k;
+        const int64_t before = x + step;
+        const int near = before >= 0 && before < nx ? here[before] : 0;
+        here[x] = here[x] > near + 1 ? (uint8_t)(near + 1) : here[x];
+      }
+    }
+  }
+}
+
+static void store_cell_clearances(mlim_field* field, const uint8_t* distance)
+{
+  const int32_t* cells = field->grid.cells;
+  for (int32_t z = 0; z < cells[2]; ++z)
+  {
+    for (int32_t y = 0; y < cells[1]; ++y)
+    {
+      for (int32_t bx = 0; bx < field->bricks[0]; ++bx)
+      {
+        const uint32_t coarse =
+          field->coarse[(size_t)bx +
+                        (size_t)field->bricks[0] *
+                          ((size_t)(y >> 2) + (size_t)field->bricks[1] * (size_t)(z >> 2))];
+        if (!(coarse & (uint32_t)MIXED))
+        {
+          continue;
+        }
+        uint32_t* words = field->layers[z >> 2].words + (coarse & DETAIL) * BRICK_CELLS +
+                          ((size_t)(y & 3) << 2 | (size_t)(z & 3) << 4);
+        const int32_t end = 4 * bx + 4 < cells[0] ? 4 * bx + 4 : cells[0];
+        for (int32_t x = 4 * bx; x < end; ++x)
+        {
+          if (!(words[x & 3] & (uint32_t)MIXED))
+          {
+            const size_t at =
+              (size_t)x + (size_t)cells[0] * ((size_t)y + (size_t)cells[1] * (size_t)z);
+            words[x & 3] |= (uint32_t)distance[at] << 16;
+          }
+        }
+      }
+    }
+  }
+}
+
+static mlim_status measure_clearances(mlim_field* field, uint8_t* distance, mlim_context* context)
+{
+  chamfer(distance, field->grid.cells);
+  store_cell_clearances(field, distance);
+  const size_t bricks =
+    (size_t)field->bricks[0] * (size_t)field->bricks[1] * (size_t)field->bricks[2];
+  uint8_t* coarse = mlim_allocate(bricks, 1);
+  if (coarse == NULL)
+  {
+    return mlim_fail_memory(context, "the field's index");
+  }
+  for (size_t b = 0; b < bricks; ++b)
+  {
+    coarse[b] = field->coarse[b] & (uint32_t)MIXED ? 0 : MAX_CLEARANCE;
+  }
+  /* Neighbouring uniform bricks have one label: their common corners are grid points. */
+  chamfer(coarse, field->bricks);
+  for (size_t b = 0; b < bricks; ++b)
+  {
+    field->coarse[b] |= coarse[b] > 0 ? (uint32_t)coarse[b] << 16 : 0;
+  }
+  mlim_release(coarse);
+  return MLIM_OK;
+}
+
+/* ---- all of it ---- */
+
+static mlim_status start_field(
+  const mlim_samples* samples, mlim_context* context, mlim_field* field)
+{
+  const mlim_grid* grid = samples->grid;
+  mlim_field_grid* g = &field->grid;
+  double volume = 1;
+  size_t points = 1;
+  size_t bricks = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    g->dims[k] = grid->dims[k];
+    g->cells[k] = grid->dims[k] - 1;
+    g->spacing[k] = grid->spacing[k];
+    g->size[k] = g->cells[k] * g->spacing[k];
+    field->inverse_spacing[k] = 1 / g->spacing[k];
+    field->bricks[k] = (g->cells[k] + BRICK - 1) / BRICK;
+    volume *= g->spacing[k];
+    points *= (size_t)g->dims[k];
+    bricks *= (size_t)field->bricks[k];
+  }
+  g->unit = cbrt(volume);
+  g->min_spacing = fmin(g->spacing[0], fmin(g->spacing[1], g->spacing[2]));
+  field->outside_label = samples->outside_label;
+  field->label_count =
+    samples->label_count + (samples->outside_label == samples->label_count ? 1 : 0);
+  field->layer_count = (size_t)field->bricks[2];
+  field->ids = mlim_allocate((size_t)field->label_count, sizeof *field->ids);
+  field->winners = mlim_allocate(points, sizeof *field->winners);
+  field->coarse = mlim_allocate_zeroed(bricks, sizeof *field->coarse);
+  field->layers = mlim_allocate_zeroed(field->layer_count, sizeof *field->layers);
+  if (field->ids == NULL || field->winners == NULL || field->coarse == NULL ||
+      field->layers == NULL)
+  {
+    return mlim_fail_memory(context, "the field's index");
+  }
+  for (int32_t l = 0; l < field->label_count; ++l)
+  {
+    const int32_t a = l - samples->first_array;
+    field->ids[l] = a >= 0 && (size_t)a < grid->array_count ? grid->arrays[a].id : 0;
+  }
+  field->ids[field->outside_label] = 0;
+  return MLIM_OK;
+}
+
+/* Two labels of one id would be told apart in the mesh and not in its arrays. */
+static mlim_status check_ids(
+  const mlim_samples* samples, mlim_context* context, const mlim_field* field)
+{
+  for (int32_t l = 0; l < field->label_count; ++l)
+  {
+    for (int32_t m = 0; m < l; ++m)
+    {
+      if (field->ids[l] == field->ids[m])
+      {
+        char name[64];
+        const size_t a = (size_t)(l - samples->first_array);
+        mlim_array_name(samples->grid, a < samples->grid->array_count ? a : a - 1, name);
+        return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+          "The label id %d is used twice (the second time near array \"%s\"); ids have to differ, "
+          "and 0 is the background's.",
+          (int)field->ids[l], name);
+      }
+    }
+  }
+  return MLIM_OK;
+}
+
+static mlim_status build_index(build_job* job, mlim_context* context)
+{
+  mlim_field* field = job->field;
+  mlim_parallel_for(context, (size_t)field->grid.dims[2], win_body, job);
+  if (job->has_failed)
+  {
+    return mlim_fail_memory(context, "the labels of the grid points");
+  }
+  mlim_status status = mlim_progress(context, MLIM_STAGE_FIELD, 0.4);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  mlim_parallel_for(context, field->layer_count, layer_body, job);
+  for (size_t z = 0; z < field->layer_count; ++z)
+  {
+    if (field->layers[z].has_failed)
+    {
+      return mlim_fail_memory(context, "the field's mixed cells");
+    }
+    if (field->layers[z].max_candidates > field->max_candidates)
+    {
+      field->max_candidates = field->layers[z].max_candidates;
+    }
+  }
+  status = mlim_progress(context, MLIM_STAGE_FIELD, 0.8);
+  return status != MLIM_OK ? status : measure_clearances(field, job->distance, context);
+}
+
+mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim_field** out)
+{
+  if (out == NULL || grid == NULL)
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT, "The grid or its result is NULL.");
+  }
+  *out = NULL;
+  build_job job = { 0 };
+  mlim_samples samples;
+  mlim_field* field = NULL;
+  mlim_status status = mlim_progress(context, MLIM_STAGE_FIELD, 0);
+  if (status == MLIM_OK)
+  {
+    status = mlim_samples_open(grid, context, &samples);
+  }
+  if (status != MLIM_OK)
+  {
+    goto done;
+  }
+  status = MLIM_OUT_OF_MEMORY;
+  field = mlim_allocate_zeroed(1, sizeof *field);
+  if (field == NULL)
+  {
+    (void)mlim_fail_memory(context, "the field");
+    goto done;
+  }
+  status = start_field(&samples, context, field);
+  if (status == MLIM_OK)
+  {
+    status = check_ids(&samples, context, field);
+  }
+  if (status != MLIM_OK)
+  {
+    goto done;
+  }
+  job = (build_job){ .samples = &samples, .field = field };
+  job.distance = mlim_allocate(
+    (size_t)field->grid.cells[0] * (size_t)field->grid.cells[1] * (size_t)field->grid.cells[2], 1);
+  if (job.distance == NULL)
+  {
+    status = mlim_fail_memory(context, "the field's clearances");
+    goto done;
+  }
+  status = build_index(&job, context);
+  if (status == MLIM_OK)
+  {
+    status = mlim_progress(context, MLIM_STAGE_FIELD, 1);
+  }
+done:
+  mlim_release(job.distance);
+  if (status != MLIM_OK)
+  {
+    mlim_field_free(field);
+    return status;
+  }
+  *out = field;
+  return MLIM_OK;
+}

@@ -1,0 +1,107 @@
+/* What the field's index holds. Private to the files that build and query it.
+
+   Cells lie in bricks of 4 x 4 x 4. A brick whose cells are all uniform with one label needs one
+   word; any other has a word for each of its cells. A mixed cell's word leads into a pool with the
+   corner values of its candidates. Pools and cell words belong to a layer of bricks (4 slices of
+   cells), so that layers can be built in parallel and need not be moved afterwards. */
+#ifndef mlim_field_index_h
+#define mlim_field_index_h
+
+#include "field.h"
+
+#include <string.h>
+
+enum
+{
+  BRICK = 4,               /* cells along a brick's side */
+  BRICK_CELLS = 64,        /* BRICK^3 */
+  MAX_CLEARANCE = 255,     /* in cells or bricks; fits the bits above the label */
+  MIXED = (int)0x80000000, /* word: the low 30 bits lead to the detail */
+  MANY = 0x40000000,       /* mixed cell word: more than two candidates */
+  DETAIL = 0x3fffffff,     /* the low 30 bits */
+  PAIR_WORDS = 1 + 8       /* two labels in one word, 8 differences */
+};
+
+typedef struct field_layer
+{
+  uint32_t* words; /* BRICK_CELLS for each brick that is not uniform */
+  size_t brick_count, brick_capacity;
+  uint32_t* pool; /* PAIR: first label | second label << 16, then 8 floats f_first - f_second.
+                     MANY: count, labels (one a word), then 8 floats a label */
+  size_t pool_count, pool_capacity;
+  size_t max_candidates;
+  int has_failed; /* out of memory, or the pool is too large for its index */
+} field_layer;
+
+struct mlim_field
+{
+  mlim_field_grid grid;
+  double inverse_spacing[3];
+  int32_t label_count; /* with the outside */
+  int32_t outside_label;
+  int32_t* ids;      /* a label */
+  uint16_t* winners; /* a grid point: its label */
+  int32_t bricks[3];
+  uint32_t* coarse; /* a brick: label | clearance in bricks << 16, or MIXED | brick in its layer */
+  field_layer* layers;
+  size_t layer_count;
+  size_t max_candidates;
+};
+
+/* Word of a cell; *clearance (may be NULL) receives a number of cells c such that all cells within
+   Chebyshev distance < c are uniform with the same label and inside the box. 0 when mixed. */
+static inline uint32_t field_cell_word(
+  const mlim_field* field, const int32_t cell[3], int* clearance)
+{
+  const int32_t bx = cell[0] >> 2;
+  const int32_t by = cell[1] >> 2;
+  const int32_t bz = cell[2] >> 2;
+  const uint32_t word =
+    field->coarse[(size_t)bx +
+                  (size_t)field->bricks[0] * ((size_t)by + (size_t)field->bricks[1] * (size_t)bz)];
+  if (!(word & (uint32_t)MIXED))
+  {
+    if (clearance != NULL)
+    {
+      /* The uniform box reaches (d - 1) bricks beyond this one on each side. */
+      const int32_t reach = BRICK * ((int32_t)(word >> 16) - 1);
+      int32_t least = INT32_MAX;
+      for (int k = 0; k < 3; ++k)
+      {
+        const int32_t in = cell[k] & (BRICK - 1);
+        const int32_t low = in + 1 + reach;
+        const int32_t high = BRICK - in + reach;
+        const int32_t room = field->grid.cells[k] - cell[k]; /* the last brick may stick out */
+        least = low < least ? low : least;
+        least = high < least ? high : least;
+        least = room < least ? room : least;
+      }
+      *clearance = least;
+    }
+    return word & 0xffffu;
+  }
+  const size_t slot =
+    (size_t)(cell[0] & 3) | (size_t)(cell[1] & 3) << 2 | (size_t)(cell[2] & 3) << 4;
+  const uint32_t inner = field->layers[bz].words[(word & DETAIL) * BRICK_CELLS + slot];
+  if (clearance != NULL)
+  {
+    *clearance = inner & (uint32_t)MIXED ? 0 : (int)(inner >> 16);
+  }
+  return inner & (uint32_t)MIXED ? inner : inner & 0xffffu;
+}
+
+/* The pool entry of a mixed cell. */
+static inline const uint32_t* field_pool_entry(
+  const mlim_field* field, const int32_t cell[3], uint32_t word)
+{
+  return field->layers[cell[2] >> 2].pool + (word & DETAIL);
+}
+
+static inline float field_float(uint32_t word)
+{
+  float value;
+  memcpy(&value, &word, sizeof value);
+  return value;
+}
+
+#endif

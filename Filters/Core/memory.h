@@ -1,0 +1,20 @@
+/* The only place that allocates. Counts are checked against overflow before they are multiplied. */
+#ifndef mlim_memory_h
+#define mlim_memory_h
+
+#include <stddef.h>
+
+/* count * size bytes, not initialised. NULL: out of memory or the product overflows. A count of 0
+   gives a valid pointer. */
+void* mlim_allocate(size_t count, size_t size);
+
+/* The same, all bytes 0. */
+void* mlim_allocate_zeroed(size_t count, size_t size);
+
+void mlim_release(void* memory);
+
+/* Makes room for at least `needed` elements in an array that grows by doubling: *array holds
+   *capacity elements before and after. Returns 0 on success; on failure nothing has changed. */
+int mlim_reserve(void* array, size_t* capacity, size_t needed, size_t size);
+
+#endif

@@ -1,0 +1,10 @@
+/* Reads the mesh from the finished complex. */
+#ifndef mlim_mesh_h
+#define mlim_mesh_h
+
+#include "complex.h"
+
+/* Fills everything of the mesh but its report and certificate. */
+mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, mlim_mesh* out);
+
+#endif

@@ -1,0 +1,219 @@
+#include "nearest.h"
+
+#include "memory.h"
+#include "status.h"
+#include "vector.h"
+
+#include <math.h>
+
+/* No more bins than this a triangle: a large box with a small mesh must not cost memory. */
+static const double BINS_A_TRIANGLE = 4;
+
+static int32_t bin_of(const mlim_nearest* nearest, double value, int axis)
+{
+  const double b = floor(value / nearest->bin);
+  return b < 0 ? 0 : b >= nearest->bins[axis] ? nearest->bins[axis] - 1 : (int32_t)b;
+}
+
+typedef struct range
+{
+  int32_t low[3];
+  int32_t high[3];
+} range;
+
+static range bins_of_triangle(const mlim_nearest* nearest, size_t t)
+{
+  const mlim_mesh* mesh = nearest->mesh;
+  range r;
+  for (int k = 0; k < 3; ++k)
+  {
+    double low = INFINITY;
+    double high = -INFINITY;
+    for (size_t j = 0; j < 3; ++j)
+    {
+      const double x = mesh->vertices[3 * (size_t)mesh->triangles[3 * t + j] + (size_t)k];
+      low = fmin(low, x);
+      high = fmax(high, x);
+    }
+    r.low[k] = bin_of(nearest, low, k);
+    r.high[k] = bin_of(nearest, high, k);
+  }
+  return r;
+}
+
+/* Counts (triangles == NULL) or places the triangles; offsets are two ahead while counting. */
+static void sort_triangles(mlim_nearest* nearest, int is_placing)
+{
+  for (size_t t = 0; t < nearest->mesh->triangle_count; ++t)
+  {
+    const range r = bins_of_triangle(nearest, t);
+    for (int32_t z = r.low[2]; z <= r.high[2]; ++z)
+    {
+      for (int32_t y = r.low[1]; y <= r.high[1]; ++y)
+      {
+        for (int32_t x = r.low[0]; x <= r.high[0]; ++x)
+        {
+          const size_t b = (size_t)x + (size_t)nearest->bins[0] *
+                                         ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
+          if (is_placing)
+          {
+            nearest->triangles[nearest->offsets[b + 1]++] = (int32_t)t;
+          }
+          else
+          {
+            ++nearest->offsets[b + 2];
+          }
+        }
+      }
+    }
+  }
+}
+
+mlim_status mlim_nearest_create(const mlim_mesh* mesh, const double size[3], double side,
+  mlim_context* context, mlim_nearest* out)
+{
+  *out = (mlim_nearest){ .mesh = mesh, .bin = side };
+  const double most = BINS_A_TRIANGLE * (double)mesh->triangle_count + 1000;
+  const double wanted = (size[0] / side + 1) * (size[1] / side + 1) * (size[2] / side + 1);
+  if (wanted > most)
+  {
+    out->bin = side * cbrt(wanted / most);
+  }
+  size_t count = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    out->bins[k] = (int32_t)(size[k] / out->bin) + 1;
+    count *= (size_t)out->bins[k];
+  }
+  out->offsets = mlim_allocate_zeroed(count + 2, sizeof *out->offsets);
+  if (out->offsets == NULL)
+  {
+    return mlim_fail_memory(context, "the search for nearest triangles");
+  }
+  sort_triangles(out, 0);
+  for (size_t b = 0; b < count; ++b)
+  {
+    out->offsets[b + 2] += out->offsets[b + 1];
+  }
+  out->triangles = mlim_allocate(out->offsets[count + 1], sizeof *out->triangles);
+  if (out->triangles == NULL)
+  {
+    mlim_nearest_free(out);
+    return mlim_fail_memory(context, "the search for nearest triangles");
+  }
+  sort_triangles(out, 1);
+  return MLIM_OK;
+}
+
+void mlim_nearest_free(mlim_nearest* nearest)
+{
+  mlim_release(nearest->offsets);
+  mlim_release(nearest->triangles);
+  *nearest = (mlim_nearest){ 0 };
+}
+
+static double segment_distance_squared(const double p[3], const double a[3], const double b[3])
+{
+  double along[3];
+  double to[3];
+  mlim_subtract(b, a, along);
+  mlim_subtract(p, a, to);
+  const double length = mlim_dot(along, along);
+  const double t = length > 0 ? fmin(fmax(mlim_dot(to, along) / length, 0), 1) : 0;
+  double q[3];
+  mlim_interpolate(a, b, t, q);
+  return mlim_distance_squared(p, q);
+}
+
+/* Inside the prism over the triangle the plane is nearest, else an edge. */
+static double triangle_distance_squared(
+  const double p[3], const double a[3], const double b[3], const double c[3])
+{
+  double u[3];
+  double v[3];
+  double w[3];
+  double n[3];
+  mlim_subtract(b, a, u);
+  mlim_subtract(c, a, v);
+  mlim_subtract(p, a, w);
+  mlim_cross(u, v, n);
+  const double nn = mlim_dot(n, n);
+  if (nn > 0)
+  {
+    double wv[3];
+    double uw[3];
+    mlim_cross(w, v, wv);
+    mlim_cross(u, w, uw);
+    const double s = mlim_dot(wv, n) / nn;
+    const double t = mlim_dot(uw, n) / nn;
+    if (s >= 0 && t >= 0 && s + t <= 1)
+    {
+      const double height = mlim_dot(w, n);
+      return height * height / nn;
+    }
+  }
+  return fmin(segment_distance_squared(p, a, b),
+    fmin(segment_distance_squared(p, b, c), segment_distance_squared(p, c, a)));
+}
+
+static double bin_distance_squared(
+  const mlim_nearest* nearest, size_t bin, const double point[3], double best, double enough)
+{
+  const mlim_mesh* mesh = nearest->mesh;
+  for (size_t k = nearest->offsets[bin]; k < nearest->offsets[bin + 1]; ++k)
+  {
+    const int32_t* t = mesh->triangles + 3 * (size_t)nearest->triangles[k];
+    best = fmin(best, triangle_distance_squared(point, mesh->vertices + 3 * (size_t)t[0],
+                        mesh->vertices + 3 * (size_t)t[1], mesh->vertices + 3 * (size_t)t[2]));
+    if (best <= enough)
+    {
+      break;
+    }
+  }
+  return best;
+}
+
+double mlim_nearest_distance(
+  const mlim_nearest* nearest, const double point[3], double enough, double limit)
+{
+  int32_t at[3];
+  int32_t widest = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    at[k] = bin_of(nearest, point[k], k);
+    widest = nearest->bins[k] > widest ? nearest->bins[k] : widest;
+  }
+  double best = limit * limit;
+  /* Shells of bins: beyond shell s everything is at least s bins away. */
+  for (int32_t s = 0; s <= widest; ++s)
+  {
+    const double reach = (s - 1) * nearest->bin;
+    if (s > 0 && reach > 0 && reach * reach >= best)
+    {
+      break;
+    }
+    for (int32_t z = at[2] - s; z <= at[2] + s; ++z)
+    {
+      for (int32_t y = at[1] - s; y <= at[1] + s; ++y)
+      {
+        const int is_side = z == at[2] - s || z == at[2] + s || y == at[1] - s || y == at[1] + s;
+        for (int32_t x = at[0] - s; x <= at[0] + s; x += is_side || s == 0 ? 1 : 2 * s)
+        {
+          if (x < 0 || y < 0 || z < 0 || x >= nearest->bins[0] || y >= nearest->bins[1] ||
+              z >= nearest->bins[2])
+          {
+            continue;
+          }
+          const size_t bin = (size_t)x + (size_t)nearest->bins[0] *
+                                           ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
+          best = bin_distance_squared(nearest, bin, point, best, enough * enough);
+          if (best <= enough * enough)
+          {
+            return sqrt(best);
+          }
+        }
+      }
+    }
+  }
+  return sqrt(best);
+}

@@ -1,0 +1,216 @@
+#include "quality.h"
+
+#include "memory.h"
+#include "status.h"
+#include "vector.h"
+
+#include <math.h>
+
+static const double DEGREES = 57.29577951308232; /* in a radian */
+
+static int32_t root_of(int32_t* parent, int32_t k)
+{
+  while (parent[k] != k)
+  {
+    parent[k] = parent[parent[k]];
+    k = parent[k];
+  }
+  return k;
+}
+
+static int same_labels(const mlim_mesh* mesh, int32_t a, int32_t b)
+{
+  const int32_t* l = mesh->triangle_labels;
+  return l[2 * a] == l[2 * b] && l[2 * a + 1] == l[2 * b + 1];
+}
+
+/* Joins triangles across edges that exactly two share, both of one pair of labels and one face. */
+static void join_patches(const mlim_mesh* mesh, const mlim_edges* edges, int32_t* parent)
+{
+  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  {
+    size_t end;
+    for (size_t first = edges->offsets[v]; first < edges->offsets[v + 1]; first = end)
+    {
+      end = mlim_edges_run_end(edges, (int32_t)v, first);
+      const int32_t a = edges->uses[first].triangle;
+      const int32_t b = edges->uses[end - 1].triangle;
+      if (end - first == 2 && same_labels(mesh, a, b) &&
+          mesh->triangle_faces[a] == mesh->triangle_faces[b])
+      {
+        const int32_t ra = root_of(parent, a);
+        const int32_t rb = root_of(parent, b);
+        parent[ra < rb ? rb : ra] = ra < rb ? ra : rb;
+      }
+    }
+  }
+}
+
+mlim_status mlim_quality_find_patches(
+  mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context)
+{
+  int32_t* parent = mlim_allocate(mesh->triangle_count, sizeof *parent);
+  if (parent == NULL)
+  {
+    return mlim_fail_memory(context, "the patches");
+  }
+  for (size_t t = 0; t < mesh->triangle_count; ++t)
+  {
+    parent[t] = (int32_t)t;
+  }
+  join_patches(mesh, edges, parent);
+  mesh->patch_count = 0;
+  for (size_t t = 0; t < mesh->triangle_count; ++t)
+  {
+    /* A root is the first triangle of its patch. */
+    const int32_t root = root_of(parent, (int32_t)t);
+    mesh->triangle_patches[t] =
+      root == (int32_t)t ? (int32_t)mesh->patch_count++ : mesh->triangle_patches[root];
+  }
+  mlim_release(parent);
+  return MLIM_OK;
+}
+
+static double angle_between(const double u[3], const double v[3])
+{
+  double n[3];
+  mlim_cross(u, v, n);
+  return DEGREES * atan2(sqrt(mlim_dot(n, n)), mlim_dot(u, v));
+}
+
+static void measure_triangle(mlim_mesh* mesh, size_t t, double* ratio_sum)
+{
+  mlim_report* report = &mesh->report;
+  const int32_t* id = mesh->triangles + 3 * t;
+  const double* p[3];
+  int has_ball = 0;
+  double shortest = INFINITY;
+  for (int k = 0; k < 3; ++k)
+  {
+    p[k] = mesh->vertices + 3 * (size_t)id[k];
+    const int32_t type = mesh->node_types[id[k]] % MLIM_NODE_ON_BOX;
+    has_ball |= type != MLIM_NODE_INTERFACE;
+  }
+  double product = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    double u[3];
+    double v[3];
+    mlim_subtract(p[(k + 1) % 3], p[k], u);
+    mlim_subtract(p[(k + 2) % 3], p[k], v);
+    const double length = sqrt(mlim_dot(u, u));
+    shortest = fmin(shortest, length);
+    product *= length;
+    report->min_angle = fmin(report->min_angle, angle_between(u, v));
+  }
+  double u[3];
+  double v[3];
+  double n[3];
+  mlim_subtract(p[1], p[0], u);
+  mlim_subtract(p[2], p[0], v);
+  mlim_cross(u, v, n);
+  const double ratio = product / (2 * sqrt(mlim_dot(n, n))) / shortest;
+  double* worst = has_ball ? &report->max_ball_radius_edge_ratio : &report->max_radius_edge_ratio;
+  *worst = fmax(*worst, ratio);
+  *ratio_sum += ratio;
+}
+
+/* Direction from an edge into a triangle, perpendicular to the edge. */
+static void direction_into(
+  const double a[3], const double b[3], const double apex[3], double out[3])
+{
+  double along[3];
+  double to[3];
+  mlim_subtract(b, a, along);
+  mlim_subtract(apex, a, to);
+  const double t = mlim_dot(to, along) / mlim_dot(along, along);
+  for (int k = 0; k < 3; ++k)
+  {
+    out[k] = to[k] - t * along[k];
+  }
+}
+
+static double smallest_dihedral(
+  const mlim_mesh* mesh, const mlim_edges* edges, int32_t lower, size_t first, size_t end)
+{
+  double least = 180;
+  const double* a = mesh->vertices + 3 * (size_t)lower;
+  const double* b = mesh->vertices + 3 * (size_t)edges->uses[first].upper;
+  for (size_t i = first; i < end; ++i)
+  {
+    double u[3];
+    direction_into(a, b, mesh->vertices + 3 * (size_t)edges->uses[i].apex, u);
+    for (size_t j = first; j < i; ++j)
+    {
+      double v[3];
+      direction_into(a, b, mesh->vertices + 3 * (size_t)edges->uses[j].apex, v);
+      least = fmin(least, angle_between(u, v));
+    }
+  }
+  return least;
+}
+
+void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges)
+{
+  mlim_report* report = &mesh->report;
+  report->min_angle = mesh->triangle_count > 0 ? 180 : 0;
+  report->min_dihedral_angle = 180;
+  report->max_radius_edge_ratio = 0;
+  report->max_ball_radius_edge_ratio = 0;
+  double ratio_sum = 0;
+  for (size_t t = 0; t < mesh->triangle_count; ++t)
+  {
+    measure_triangle(mesh, t, &ratio_sum);
+  }
+  report->mean_radius_edge_ratio =
+    mesh->triangle_count > 0 ? ratio_sum / (double)mesh->triangle_count : 0;
+  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  {
+    size_t end;
+    for (size_t first = edges->offsets[v]; first < edges->offsets[v + 1]; first = end)
+    {
+      end = mlim_edges_run_end(edges, (int32_t)v, first);
+      if (end - first > 2)
+      {
+        report->min_dihedral_angle =
+          fmin(report->min_dihedral_angle, smallest_dihedral(mesh, edges, (int32_t)v, first, end));
+      }
+    }
+  }
+}
+
+/* Balance of one label round an edge: its triangles run both ways equally often. */
+static int balance(
+  const mlim_mesh* mesh, const mlim_edges* edges, size_t first, size_t end, int32_t label)
+{
+  int sum = 0;
+  for (size_t k = first; k < end; ++k)
+  {
+    const int32_t* labels = mesh->triangle_labels + 2 * (size_t)edges->uses[k].triangle;
+    sum += labels[0] == label ? edges->uses[k].sign : 0;
+    sum -= labels[1] == label ? edges->uses[k].sign : 0;
+  }
+  return sum;
+}
+
+size_t mlim_quality_count_open_edges(const mlim_mesh* mesh, const mlim_edges* edges)
+{
+  size_t count = 0;
+  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  {
+    size_t end;
+    for (size_t first = edges->offsets[v]; first < edges->offsets[v + 1]; first = end)
+    {
+      end = mlim_edges_run_end(edges, (int32_t)v, first);
+      int is_open = 0;
+      for (size_t k = first; k < end && !is_open; ++k)
+      {
+        const int32_t* labels = mesh->triangle_labels + 2 * (size_t)edges->uses[k].triangle;
+        is_open = balance(mesh, edges, first, end, labels[0]) != 0 ||
+                  balance(mesh, edges, first, end, labels[1]) != 0;
+      }
+      count += (size_t)is_open;
+    }
+  }
+  return count;
+}

@@ -1,0 +1,46 @@
+/* The refinement loop: the worst restricted facets are mended by inserting the points where their
+   duals cross the interface. Dey, Janoos, Levine, section 3.3. */
+#ifndef mlim_refine_h
+#define mlim_refine_h
+
+#include "disk.h"
+#include "queue.h"
+
+typedef enum mlim_goal
+{
+  MLIM_GOAL_TOPOLOGY, /* only what makes the complex right */
+  MLIM_GOAL_QUALITY   /* also size, distance and shape */
+} mlim_goal;
+
+typedef struct mlim_refinement
+{
+  mlim_complex complex;
+  mlim_ball_links links;
+  mlim_queue queue;
+  mlim_star star;
+  const mlim_options* options; /* borrowed */
+  mlim_goal goal;
+  size_t insertion_count;
+  double expected_vertices; /* a guess, for progress */
+  double progress;          /* last reported */
+} mlim_refinement;
+
+/* Inserts the balls, records the complex. Points of the outcome are seeded by the caller. */
+mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
+  const mlim_balls* balls, const mlim_options* options, mlim_context* context);
+void mlim_refine_free(mlim_refinement* refinement);
+
+/* Refines until nothing that is bad by the goal can be mended. MLIM_VERTEX_LIMIT: stopped early,
+   all is valid. */
+mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_context* context);
+
+/* Balls (one byte each) that stand in the way of the topology: a foreign sheet touches them, or
+   their star fails the disk condition. *count: how many. */
+mlim_status mlim_refine_find_balls(
+  mlim_refinement* refinement, unsigned char* is_marked, mlim_context* context, size_t* count);
+
+/* Number of vertices that fail the disk condition. */
+mlim_status mlim_refine_count_disks(
+  mlim_refinement* refinement, mlim_context* context, size_t* count);
+
+#endif

@@ -1,0 +1,394 @@
+#include "samples.h"
+
+#include "memory.h"
+#include "status.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Blanked points belong to the outside: its label gets a value above every other one there, and
+   below every other one elsewhere, so the interface runs half-way between. */
+static double blank_value(const mlim_samples* samples, size_t point)
+{
+  const double reach = samples->range > 0 ? samples->range : 1;
+  return samples->grid->is_outside[point] ? 2 * reach : -2 * reach;
+}
+
+static void read_strided(const mlim_array* array, size_t first, size_t count, double* out)
+{
+  const size_t stride = array->stride;
+  const size_t start = first * stride;
+  switch (array->type)
+  {
+    case MLIM_INT8:
+    {
+      const int8_t* v = (const int8_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = v[i * stride];
+      }
+      break;
+    }
+    case MLIM_UINT8:
+    {
+      const uint8_t* v = (const uint8_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = v[i * stride];
+      }
+      break;
+    }
+    case MLIM_INT16:
+    {
+      const int16_t* v = (const int16_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = v[i * stride];
+      }
+      break;
+    }
+    case MLIM_UINT16:
+    {
+      const uint16_t* v = (const uint16_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = v[i * stride];
+      }
+      break;
+    }
+    case MLIM_INT32:
+    {
+      const int32_t* v = (const int32_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = v[i * stride];
+      }
+      break;
+    }
+    case MLIM_UINT32:
+    {
+      const uint32_t* v = (const uint32_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = v[i * stride];
+      }
+      break;
+    }
+    case MLIM_INT64:
+    {
+      const int64_t* v = (const int64_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = (double)v[i * stride];
+      }
+      break;
+    }
+    case MLIM_UINT64:
+    {
+      const uint64_t* v = (const uint64_t*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = (double)v[i * stride];
+      }
+      break;
+    }
+    case MLIM_FLOAT32:
+    {
+      const float* v = (const float*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = (double)v[i * stride];
+      }
+      break;
+    }
+    case MLIM_FLOAT64:
+    {
+      const double* v = (const double*)array->values + start;
+      for (size_t i = 0; i < count; ++i)
+      {
+        out[i] = v[i * stride];
+      }
+      break;
+    }
+    case MLIM_SCALAR_END:
+      break;
+  }
+}
+
+static const mlim_array* array_of(const mlim_samples* samples, int32_t label)
+{
+  const int32_t k = label - samples->first_array;
+  return k >= 0 && (size_t)k < samples->grid->array_count ? &samples->grid->arrays[k] : NULL;
+}
+
+/* A label without an array: constant or complement background, or the outside of blanked points.
+   One row, by adding up all arrays when it is a complement. */
+static void rule_row(const mlim_samples* samples, size_t first, size_t count, double* out)
+{
+  const mlim_grid* grid = samples->grid;
+  const double value_here = grid->background == MLIM_BACKGROUND_CONSTANT ? grid->background_value
+                            : grid->background == MLIM_BACKGROUND_COMPLEMENT
+                              ? samples->total
+                              : -2 * samples->range - 1;
+  for (size_t i = 0; i < count; ++i)
+  {
+    out[i] = value_here;
+  }
+  if (grid->background == MLIM_BACKGROUND_COMPLEMENT)
+  {
+    double value[64];
+    for (size_t a = 0; a < grid->array_count; ++a)
+    {
+      for (size_t i = 0; i < count; i += 64)
+      {
+        const size_t n = count - i < 64 ? count - i : 64;
+        read_strided(&grid->arrays[a], first + i, n, value);
+        for (size_t k = 0; k < n; ++k)
+        {
+          out[i + k] -= value[k];
+        }
+      }
+    }
+  }
+}
+
+void mlim_samples_row(
+  const mlim_samples* samples, int32_t label, size_t first, size_t count, double* out)
+{
+  const mlim_array* array = array_of(samples, label);
+  if (array != NULL)
+  {
+    read_strided(array, first, count, out);
+  }
+  else
+  {
+    rule_row(samples, first, count, out);
+  }
+  if (label == samples->outside_label && samples->grid->is_outside != NULL)
+  {
+    for (size_t i = 0; i < count; ++i)
+    {
+      const double blank = blank_value(samples, first + i);
+      out[i] = blank > 0 || array == NULL ? (blank > out[i] ? blank : out[i]) : out[i];
+    }
+  }
+}
+
+void mlim_samples_corners(const mlim_samples* samples, int32_t label, size_t first, double out[8])
+{
+  const size_t nx = (size_t)samples->grid->dims[0];
+  const size_t slice = nx * (size_t)samples->grid->dims[1];
+  mlim_samples_row(samples, label, first, 2, out);
+  mlim_samples_row(samples, label, first + nx, 2, out + 2);
+  mlim_samples_row(samples, label, first + slice, 2, out + 4);
+  mlim_samples_row(samples, label, first + slice + nx, 2, out + 6);
+}
+
+void mlim_array_name(const mlim_grid* grid, size_t array, char out[64])
+{
+  const char* name = grid->arrays[array].name;
+  size_t n = 0;
+  for (; name != NULL && name[n] != '\0' && n + 1 < 64; ++n)
+  {
+    out[n] = name[n];
+  }
+  out[n] = '\0';
+}
+
+/* ---- the first reading ---- */
+
+typedef struct slice_facts
+{
+  double min, max, max_sum;
+  int has_bad;
+} slice_facts;
+
+typedef struct scan_job
+{
+  const mlim_grid* grid;
+  slice_facts* facts; /* one a z slice */
+} scan_job;
+
+static void scan_slice(const mlim_grid* grid, size_t z, slice_facts* facts)
+{
+  enum
+  {
+    CHUNK = 256
+  };
+  const size_t slice = (size_t)grid->dims[0] * (size_t)grid->dims[1];
+  *facts = (slice_facts){ .min = DBL_MAX, .max = -DBL_MAX, .max_sum = -DBL_MAX };
+  for (size_t i = 0; i < slice; i += CHUNK)
+  {
+    const size_t n = slice - i < CHUNK ? slice - i : CHUNK;
+    double sum[CHUNK] = { 0 };
+    double value[CHUNK];
+    for (size_t a = 0; a < grid->array_count; ++a)
+    {
+      read_strided(&grid->arrays[a], z * slice + i, n, value);
+      int bad = 0;
+      for (size_t k = 0; k < n; ++k)
+      {
+        bad |= !(value[k] - value[k] == 0);
+        facts->min = value[k] < facts->min ? value[k] : facts->min;
+        facts->max = value[k] > facts->max ? value[k] : facts->max;
+        sum[k] += value[k];
+      }
+      facts->has_bad |= bad;
+    }
+    for (size_t k = 0; k < n; ++k)
+    {
+      facts->max_sum = sum[k] > facts->max_sum ? sum[k] : facts->max_sum;
+    }
+  }
+}
+
+static void scan_body(void* job, size_t begin, size_t end)
+{
+  const scan_job* scan = (const scan_job*)job;
+  for (size_t z = begin; z < end; ++z)
+  {
+    scan_slice(scan->grid, z, &scan->facts[z]);
+  }
+}
+
+/* Says how many values are not finite, in which array, and where the first is. */
+static mlim_status refuse_bad(const mlim_grid* grid, mlim_context* context)
+{
+  const size_t nx = (size_t)grid->dims[0];
+  const size_t ny = (size_t)grid->dims[1];
+  const size_t points = nx * ny * (size_t)grid->dims[2];
+  for (size_t a = 0; a < grid->array_count; ++a)
+  {
+    size_t count = 0;
+    size_t where = 0;
+    for (size_t i = 0; i < points; ++i)
+    {
+      double value;
+      read_strided(&grid->arrays[a], i, 1, &value);
+      if (!isfinite(value))
+      {
+        where = count == 0 ? i : where;
+        ++count;
+      }
+    }
+    if (count > 0)
+    {
+      char name[64];
+      mlim_array_name(grid, a, name);
+      return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+        "Array %zu \"%s\" has %zu values that are not finite, the first at point (%zu, %zu, %zu); "
+        "all values have to be finite.",
+        a, name, count, where % nx, where / nx % ny, where / (nx * ny));
+    }
+  }
+  return MLIM_OK;
+}
+
+static mlim_status check_grid(const mlim_grid* grid, mlim_context* context)
+{
+  double points = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    if (grid->dims[k] < 2)
+    {
+      return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+        "The image has %d points along axis %d; at least 2 are needed.", (int)grid->dims[k], k);
+    }
+    if (!(grid->spacing[k] > 0) || !isfinite(grid->spacing[k]))
+    {
+      return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+        "The spacing along axis %d is %g; it has to be finite and above 0.", k, grid->spacing[k]);
+    }
+    points *= grid->dims[k];
+  }
+  if (points > 9e15)
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+      "The image has %g points; at most 9e15 can be indexed.", points);
+  }
+  if (grid->array_count < 1 || grid->array_count > 32000)
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+      "There are %zu indicator arrays; 1 to 32000 can be meshed.", grid->array_count);
+  }
+  if (grid->background == MLIM_BACKGROUND_ARRAY && grid->background_array >= grid->array_count)
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+      "The background is array %zu of %zu arrays; it has to be one of them.",
+      grid->background_array, grid->array_count);
+  }
+  if (grid->background == MLIM_BACKGROUND_CONSTANT && !isfinite(grid->background_value))
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+      "The background's value is %g; it has to be finite.", grid->background_value);
+  }
+  for (size_t a = 0; a < grid->array_count; ++a)
+  {
+    if (grid->arrays[a].values == NULL || grid->arrays[a].type >= MLIM_SCALAR_END ||
+        grid->arrays[a].stride == 0)
+    {
+      return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+        "Array %zu has no values, an unknown scalar type or a stride of 0.", a);
+    }
+  }
+  return MLIM_OK;
+}
+
+static void name_labels(const mlim_grid* grid, mlim_samples* out)
+{
+  const int has_extra =
+    grid->background == MLIM_BACKGROUND_CONSTANT || grid->background == MLIM_BACKGROUND_COMPLEMENT;
+  out->grid = grid;
+  out->first_array = has_extra;
+  out->label_count = (int32_t)grid->array_count + has_extra;
+  out->outside_label = has_extra                                   ? 0
+                       : grid->background == MLIM_BACKGROUND_ARRAY ? (int32_t)grid->background_array
+                                                                   : out->label_count;
+}
+
+mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim_samples* out)
+{
+  *out = (mlim_samples){ 0 };
+  mlim_status status = check_grid(grid, context);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  const size_t slices = (size_t)grid->dims[2];
+  slice_facts* facts = mlim_allocate(slices, sizeof *facts);
+  if (facts == NULL)
+  {
+    return mlim_fail_memory(context, "reading the arrays");
+  }
+  mlim_parallel_for(context, slices, scan_body, &(scan_job){ .grid = grid, .facts = facts });
+  double low = DBL_MAX;
+  double high = -DBL_MAX;
+  double total = -DBL_MAX;
+  int has_bad = 0;
+  for (size_t z = 0; z < slices; ++z)
+  {
+    low = facts[z].min < low ? facts[z].min : low;
+    high = facts[z].max > high ? facts[z].max : high;
+    total = facts[z].max_sum > total ? facts[z].max_sum : total;
+    has_bad |= facts[z].has_bad;
+  }
+  mlim_release(facts);
+  if (has_bad)
+  {
+    return refuse_bad(grid, context);
+  }
+  if (grid->background == MLIM_BACKGROUND_CONSTANT)
+  {
+    low = grid->background_value < low ? grid->background_value : low;
+    high = grid->background_value > high ? grid->background_value : high;
+  }
+  name_labels(grid, out);
+  out->total = total;
+  out->range = high - low;
+  const double largest = fmax(fmax(fabs(low), fabs(high)), fabs(total));
+  int exponent = 0;
+  (void)frexp(isfinite(out->range) && largest > 0 ? largest : 1, &exponent);
+  out->scale = ldexp(1.0, -exponent - 3);
+  return MLIM_OK;
+}

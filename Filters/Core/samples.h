@@ -1,0 +1,32 @@
+/* The caller's arrays as doubles: every scalar type, and the labels that exist only by rule
+   (constant and complement background, blanked points). Read-only and borrowed. */
+#ifndef mlim_samples_h
+#define mlim_samples_h
+
+#include "mlim.h"
+
+typedef struct mlim_samples
+{
+  const mlim_grid* grid;
+  int32_t label_count;
+  int32_t outside_label;
+  int32_t first_array; /* label of arrays[0]: 1 with an extra background label, else 0 */
+  double total;        /* with a complement: the largest sum of the arrays */
+  double scale;        /* power of two that brings all values below 1 */
+  double range;        /* largest minus smallest value */
+} mlim_samples;
+
+/* Reads the values once: refuses what is not finite, finds range and total. */
+mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim_samples* out);
+
+/* Values of a label at `count` points from grid point index `first` on, along x. */
+void mlim_samples_row(
+  const mlim_samples* samples, int32_t label, size_t first, size_t count, double* out);
+
+/* Values of a label at the 8 corners of the cell whose first point has index `first`. */
+void mlim_samples_corners(const mlim_samples* samples, int32_t label, size_t first, double out[8]);
+
+/* The name of an array for messages. */
+void mlim_array_name(const mlim_grid* grid, size_t array, char out[64]);
+
+#endif

@@ -1,0 +1,18 @@
+/* The first points on the interface, from the grid's own crossings: a few on every component of
+   every label, so that a one-voxel island is found, and one on every sheet in every coarse block. */
+#ifndef mlim_seeds_h
+#define mlim_seeds_h
+
+#include "complex.h"
+#include "components.h"
+
+/* On the components of at least min_voxels: their extreme points along the axes. With is_wanted
+   (one byte a component) only on those. Returns through *count the number of points inserted. */
+mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_components* components,
+  const unsigned char* is_wanted, size_t min_voxels, mlim_context* context, size_t* count);
+
+/* One a sheet and block; none closer than `distance` to a vertex that is there. */
+mlim_status mlim_seeds_on_sheets(
+  mlim_complex* complex, double distance, mlim_context* context, size_t* count);
+
+#endif

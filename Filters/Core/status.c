@@ -1,0 +1,87 @@
+#include "status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+const char* mlim_status_text(mlim_status status)
+{
+  switch (status)
+  {
+    case MLIM_OK:
+      return "success";
+    case MLIM_INVALID_ARGUMENT:
+      return "an input or an option is out of range";
+    case MLIM_OUT_OF_MEMORY:
+      return "out of memory";
+    case MLIM_CANCELLED:
+      return "cancelled";
+    case MLIM_VERTEX_LIMIT:
+      return "the vertex limit is reached";
+    case MLIM_INTERNAL:
+      return "internal error";
+    case MLIM_STATUS_END:
+      break;
+  }
+  return "unknown status";
+}
+
+const char* mlim_stage_text(mlim_stage stage)
+{
+  switch (stage)
+  {
+    case MLIM_STAGE_FIELD:
+      return "Indexing the indicator field";
+    case MLIM_STAGE_CURVES:
+      return "Extracting curves";
+    case MLIM_STAGE_BALLS:
+      return "Protecting curves";
+    case MLIM_STAGE_SURFACE:
+      return "Refining the interface";
+    case MLIM_STAGE_CERTIFICATE:
+      return "Checking the mesh";
+    case MLIM_STAGE_END:
+      break;
+  }
+  return "unknown stage";
+}
+
+mlim_status mlim_fail(mlim_context* context, mlim_status status, const char* format, ...)
+{
+  if (context != NULL)
+  {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(context->message, sizeof context->message, format, arguments);
+    va_end(arguments);
+  }
+  return status;
+}
+
+mlim_status mlim_fail_memory(mlim_context* context, const char* what)
+{
+  return mlim_fail(context, MLIM_OUT_OF_MEMORY, "There is not enough memory for %s.", what);
+}
+
+mlim_status mlim_progress(mlim_context* context, mlim_stage stage, double fraction)
+{
+  if (context == NULL || context->progress == NULL ||
+      context->progress(context->user, stage, fraction) == 0)
+  {
+    return MLIM_OK;
+  }
+  return mlim_fail(context, MLIM_CANCELLED, "Cancelled by the host.");
+}
+
+void mlim_parallel_for(mlim_context* context, size_t count, mlim_body body, void* job)
+{
+  if (count == 0)
+  {
+    return;
+  }
+  if (context != NULL && context->parallel_for != NULL)
+  {
+    context->parallel_for(context->user, count, body, job);
+    return;
+  }
+  body(job, 0, count);
+}

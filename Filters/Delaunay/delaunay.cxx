@@ -1,0 +1,396 @@
+// The triangulation behind Core/delaunay.h, over CGAL's Regular_triangulation_3 (exact predicates,
+// inexact constructions). The only file that includes CGAL. Points go in one at a time: a range
+// insertion would reorder them.
+
+extern "C"
+{
+#include "delaunay.h"
+#include "status.h"
+}
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Hidden_point_memory_policy.h>
+#include <CGAL/Regular_triangulation_3.h>
+#include <CGAL/Regular_triangulation_cell_base_3.h>
+#include <CGAL/Regular_triangulation_vertex_base_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace
+{
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Weighted = Kernel::Weighted_point_3;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<int32_t, Kernel,
+  CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
+using CellBase = CGAL::Triangulation_cell_base_with_info_3<int32_t, Kernel,
+  CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
+    CGAL::Discard_hidden_points>>;
+using Structure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase>;
+using Regular = CGAL::Regular_triangulation_3<Kernel, Structure>;
+using CellHandle = Regular::Cell_handle;
+using VertexHandle = Regular::Vertex_handle;
+using Facet = Regular::Facet;
+
+// CGAL's own insertion in two halves, without its point location.
+class Triangulation : public Regular
+{
+public:
+  // Everything that the point conflicts with, from a cell that does.
+  void Conflicts(const Weighted& point, CellHandle start, std::vector<Facet>& boundary,
+    std::vector<CellHandle>& cells) const
+  {
+    auto test = [this, &point](CellHandle c) { return this->in_conflict_3(point, c); };
+    Tr_Base::find_conflicts(start, test,
+      CGAL::make_triple(
+        std::back_inserter(boundary), std::back_inserter(cells), CGAL::Emptyset_iterator()));
+  }
+
+  bool IsInConflict(const Weighted& point, CellHandle cell) const
+  {
+    return this->in_conflict_3(point, cell);
+  }
+
+  // Undoes the marks of Conflicts, for a zone that is not filled.
+  static void Forget(const std::vector<Facet>& boundary, const std::vector<CellHandle>& cells)
+  {
+    for (const Facet& f : boundary)
+    {
+      f.first->neighbor(f.second)->tds_data().clear();
+    }
+    for (CellHandle c : cells)
+    {
+      c->tds_data().clear();
+    }
+  }
+
+  VertexHandle Fill(
+    const Weighted& point, const std::vector<Facet>& boundary, const std::vector<CellHandle>& cells)
+  {
+    if (this->tds().is_small_hole(boundary.size()))
+    {
+      return this->_insert_in_small_hole(point, cells, boundary);
+    }
+    return this->_insert_in_hole(
+      point, cells.begin(), cells.end(), boundary.back().first, boundary.back().second);
+  }
+};
+
+// Weighted circumcentre. Below this squared ratio of volume to edge lengths the plain formula loses
+// more than five of its sixteen digits, and exact arithmetic takes over.
+constexpr double FLAT = 1e-22;
+
+void PowerCenter(CellHandle cell, double out[3])
+{
+  const Weighted& p0 = cell->vertex(0)->point();
+  double edge[3][3];
+  double right[3];
+  double product = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Weighted& p = cell->vertex(k + 1)->point();
+    edge[k][0] = p.x() - p0.x();
+    edge[k][1] = p.y() - p0.y();
+    edge[k][2] = p.z() - p0.z();
+    const double squared =
+      edge[k][0] * edge[k][0] + edge[k][1] * edge[k][1] + edge[k][2] * edge[k][2];
+    right[k] = squared - p.weight() + p0.weight();
+    product *= squared;
+  }
+  double normal[3][3];
+  for (int k = 0; k < 3; ++k)
+  {
+    const double* a = edge[(k + 1) % 3];
+    const double* b = edge[(k + 2) % 3];
+    normal[k][0] = a[1] * b[2] - a[2] * b[1];
+    normal[k][1] = a[2] * b[0] - a[0] * b[2];
+    normal[k][2] = a[0] * b[1] - a[1] * b[0];
+  }
+  const double volume =
+    edge[0][0] * normal[0][0] + edge[0][1] * normal[0][1] + edge[0][2] * normal[0][2];
+  if (!(volume > 0) || volume * volume < FLAT * product)
+  {
+    using ExactPoint = Exact::Weighted_point_3;
+    auto exact = [](const Weighted& p)
+    { return ExactPoint(Exact::Point_3(p.x(), p.y(), p.z()), p.weight()); };
+    const Exact::Point_3 center =
+      Exact().construct_weighted_circumcenter_3_object()(exact(p0), exact(cell->vertex(1)->point()),
+        exact(cell->vertex(2)->point()), exact(cell->vertex(3)->point()));
+    out[0] = CGAL::to_double(center.x());
+    out[1] = CGAL::to_double(center.y());
+    out[2] = CGAL::to_double(center.z());
+    return;
+  }
+  const double base[3] = { p0.x(), p0.y(), p0.z() };
+  for (int k = 0; k < 3; ++k)
+  {
+    out[k] =
+      base[k] +
+      0.5 * (right[0] * normal[0][k] + right[1] * normal[1][k] + right[2] * normal[2][k]) / volume;
+  }
+}
+
+// Runs a function; no exception leaves it.
+template <typename Function>
+mlim_status Guard(mlim_context* context, Function&& function)
+{
+  try
+  {
+    return function();
+  }
+  catch (const std::bad_alloc&)
+  {
+    return mlim_fail(
+      context, MLIM_OUT_OF_MEMORY, "There is not enough memory for the triangulation.");
+  }
+  catch (const std::exception& error)
+  {
+    return mlim_fail(context, MLIM_INTERNAL, "The triangulation failed: %s", error.what());
+  }
+  catch (...)
+  {
+    return mlim_fail(context, MLIM_INTERNAL, "The triangulation failed.");
+  }
+}
+}
+
+struct mlim_delaunay
+{
+  Triangulation triangulation;
+  std::vector<CellHandle> cells; // by id; stale where the id is free
+  std::vector<int32_t> free;     // ids, last in first out
+  int32_t vertex_count = 0;
+  double far[MLIM_FAR_VERTICES][3];
+
+  // The zone of the last find.
+  Weighted point;
+  std::vector<Facet> boundary;
+  std::vector<CellHandle> zone;
+  bool has_zone = false;
+
+  // What the C side borrows.
+  std::vector<int32_t> dead;
+  std::vector<mlim_delaunay_cell> made;
+  std::vector<std::pair<CellHandle, int>> outer;
+
+  void TakeId(CellHandle cell)
+  {
+    if (this->free.empty())
+    {
+      cell->info() = static_cast<int32_t>(this->cells.size());
+      this->cells.push_back(cell);
+      return;
+    }
+    cell->info() = this->free.back();
+    this->free.pop_back();
+    this->cells[static_cast<size_t>(cell->info())] = cell;
+  }
+
+  mlim_delaunay_cell Describe(CellHandle cell) const
+  {
+    mlim_delaunay_cell out;
+    out.id = cell->info();
+    for (int k = 0; k < 4; ++k)
+    {
+      out.vertices[k] = cell->vertex(k)->info();
+      CellHandle n = cell->neighbor(k);
+      out.neighbors[k] = this->triangulation.is_infinite(n) ? MLIM_NO_CELL : n->info();
+    }
+    PowerCenter(cell, out.center);
+    return out;
+  }
+
+  // A vertex of dead cells that is on no boundary facet would vanish.
+  bool HidesVertex() const
+  {
+    std::vector<int32_t> kept;
+    for (const Facet& f : this->boundary)
+    {
+      for (int k = 1; k < 4; ++k)
+      {
+        kept.push_back(f.first->vertex((f.second + k) & 3)->info());
+      }
+    }
+    std::sort(kept.begin(), kept.end());
+    for (CellHandle c : this->zone)
+    {
+      for (int k = 0; k < 4; ++k)
+      {
+        if (!std::binary_search(kept.begin(), kept.end(), c->vertex(k)->info()))
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  void Drop()
+  {
+    if (this->has_zone)
+    {
+      Triangulation::Forget(this->boundary, this->zone);
+    }
+    this->has_zone = false;
+    this->boundary.clear();
+    this->zone.clear();
+    this->dead.clear();
+  }
+
+  void Start(const double size[3])
+  {
+    // Far enough that no facet of the mesh can see them after the first insertions, near enough not
+    // to cost digits; off the cube's corners, since eight points on a sphere are a degenerate start.
+    const double largest = std::max(size[0], std::max(size[1], size[2]));
+    for (int k = 0; k < MLIM_FAR_VERTICES; ++k)
+    {
+      const double off = 0.0078125 * k;
+      const double sign[3] = { k & 1 ? 1.0 : -1.0, k & 2 ? 1.0 : -1.0, k & 4 ? 1.0 : -1.0 };
+      const double shift[3] = { off, -0.75 * off, off * off * 3 };
+      for (int a = 0; a < 3; ++a)
+      {
+        this->far[k][a] = 0.5 * size[a] + largest * (3 * sign[a] + shift[a]);
+      }
+      VertexHandle v = this->triangulation.insert(
+        Weighted(Point(this->far[k][0], this->far[k][1], this->far[k][2]), 0));
+      v->info() = this->vertex_count++;
+    }
+    for (CellHandle c : this->triangulation.finite_cell_handles())
+    {
+      this->TakeId(c);
+    }
+  }
+};
+
+mlim_status mlim_delaunay_create(const double size[3], mlim_context* context, mlim_delaunay** out)
+{
+  *out = nullptr;
+  return Guard(context,
+    [&]
+    {
+      auto made = std::make_unique<mlim_delaunay>();
+      made->Start(size);
+      *out = made.release();
+      return MLIM_OK;
+    });
+}
+
+void mlim_delaunay_free(mlim_delaunay* delaunay)
+{
+  delete delaunay;
+}
+
+void mlim_delaunay_far_vertex(const mlim_delaunay* delaunay, int32_t vertex, double out[3])
+{
+  std::copy_n(delaunay->far[vertex], 3, out);
+}
+
+mlim_status mlim_delaunay_all(
+  mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_cells* out)
+{
+  *out = {};
+  return Guard(context,
+    [&]
+    {
+      delaunay->made.clear();
+      for (CellHandle c : delaunay->triangulation.finite_cell_handles())
+      {
+        delaunay->made.push_back(delaunay->Describe(c));
+      }
+      std::sort(delaunay->made.begin(), delaunay->made.end(),
+        [](const mlim_delaunay_cell& a, const mlim_delaunay_cell& b) { return a.id < b.id; });
+      *out = { delaunay->made.size(), delaunay->made.data() };
+      return MLIM_OK;
+    });
+}
+
+mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], double weight,
+  int32_t start, mlim_delaunay_start kind, mlim_context* context, mlim_delaunay_zone* out)
+{
+  *out = {};
+  return Guard(context,
+    [&]
+    {
+      delaunay->Drop();
+      Triangulation& t = delaunay->triangulation;
+      delaunay->point = Weighted(Point(point[0], point[1], point[2]), weight);
+      CellHandle from =
+        start == MLIM_NO_CELL ? CellHandle() : delaunay->cells[static_cast<size_t>(start)];
+      if (kind == MLIM_START_NEAR)
+      {
+        Regular::Locate_type type;
+        int i;
+        int j;
+        from = t.locate(delaunay->point, type, i, j, from);
+      }
+      if (from == CellHandle() || t.is_infinite(from) || !t.IsInConflict(delaunay->point, from))
+      {
+        return MLIM_OK;
+      }
+      delaunay->has_zone = true;
+      t.Conflicts(delaunay->point, from, delaunay->boundary, delaunay->zone);
+      const bool is_out = std::any_of(delaunay->zone.begin(), delaunay->zone.end(),
+        [&t](CellHandle c) { return t.is_infinite(c); });
+      if (is_out || (weight > 0 && delaunay->HidesVertex()))
+      {
+        delaunay->Drop();
+        return MLIM_OK;
+      }
+      for (CellHandle c : delaunay->zone)
+      {
+        delaunay->dead.push_back(c->info());
+      }
+      *out = { delaunay->dead.size(), delaunay->dead.data() };
+      return MLIM_OK;
+    });
+}
+
+mlim_status mlim_delaunay_fill(
+  mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_cells* out)
+{
+  *out = {};
+  if (!delaunay->has_zone)
+  {
+    return mlim_fail(context, MLIM_INTERNAL, "A point was inserted without its zone.");
+  }
+  return Guard(context,
+    [&]
+    {
+      delaunay->outer.clear();
+      for (const Facet& f : delaunay->boundary)
+      {
+        CellHandle o = f.first->neighbor(f.second);
+        delaunay->outer.emplace_back(o, o->index(f.first));
+      }
+      delaunay->made.clear();
+      delaunay->made.reserve(delaunay->outer.size());
+      delaunay->free.insert(delaunay->free.end(), delaunay->dead.rbegin(), delaunay->dead.rend());
+      delaunay->has_zone = false;
+      VertexHandle v =
+        delaunay->triangulation.Fill(delaunay->point, delaunay->boundary, delaunay->zone);
+      v->info() = delaunay->vertex_count++;
+      for (const auto& o : delaunay->outer)
+      {
+        delaunay->TakeId(o.first->neighbor(o.second));
+      }
+      for (const auto& o : delaunay->outer)
+      {
+        delaunay->made.push_back(delaunay->Describe(o.first->neighbor(o.second)));
+      }
+      delaunay->boundary.clear();
+      delaunay->zone.clear();
+      delaunay->dead.clear();
+      *out = { delaunay->made.size(), delaunay->made.data() };
+      return MLIM_OK;
+    });
+}

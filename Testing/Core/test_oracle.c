@@ -1,0 +1,168 @@
+/* The field and the oracle against a naive argmax over all labels. */
+#include "check.h"
+#include "field.h"
+#include "oracle.h"
+#include "random_field.h"
+
+#include <math.h>
+
+static random_field f;
+
+/* A margin below this may be decided either way by rounding (values are at most 12). */
+static const double CLEAR = 1e-5;
+
+static void random_point(uint64_t* seed, double out[3])
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    out[k] = (f.dims[k] - 1) * f.spacing[k] * (1.2 * random_unit(seed) - 0.1);
+  }
+}
+
+static void test_labels(const mlim_field* field, uint64_t seed)
+{
+  for (int n = 0; n < 4000; ++n)
+  {
+    double point[3];
+    double margin;
+    random_point(&seed, point);
+    const int32_t expected = random_field_label(&f, point, &margin);
+    CHECK(margin < CLEAR || mlim_field_label(field, point) == expected);
+  }
+  for (int n = 0; n < 200; ++n)
+  {
+    const int32_t at[3] = { (int32_t)(random_unit(&seed) * f.dims[0]),
+      (int32_t)(random_unit(&seed) * f.dims[1]), (int32_t)(random_unit(&seed) * f.dims[2]) };
+    double margin;
+    const double point[3] = { at[0] * f.spacing[0], at[1] * f.spacing[1], at[2] * f.spacing[2] };
+    CHECK(mlim_field_point_label(field, at) == random_field_label(&f, point, &margin));
+  }
+}
+
+static int32_t label_at(const double a[3], const double b[3], double t, double* margin)
+{
+  double point[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    point[k] = a[k] + t * (b[k] - a[k]);
+  }
+  return random_field_label(&f, point, margin);
+}
+
+/* Between two crossings the label is the same everywhere; labels chain; both sides are right. */
+static void test_segment(const mlim_field* field, const double a[3], const double b[3])
+{
+  enum
+  {
+    CAPACITY = 256,
+    SAMPLES = 400
+  };
+  mlim_crossing crossing[CAPACITY];
+  const mlim_oracle oracle = { .field = field, .tolerance = 1e-7, .mode = MLIM_ORACLE_EXACT };
+  const size_t count = mlim_oracle_crossings(&oracle, a, b, CAPACITY, crossing);
+  double length = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    length += (b[k] - a[k]) * (b[k] - a[k]);
+  }
+  double at[CAPACITY + 1];
+  for (size_t c = 0; c < count; ++c)
+  {
+    double t = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+      t += (crossing[c].point[k] - a[k]) * (b[k] - a[k]) / length;
+    }
+    at[c] = t;
+    CHECK(c == 0 || (t >= at[c - 1] - 1e-9 && crossing[c].from == crossing[c - 1].to));
+    CHECK(crossing[c].from != crossing[c].to);
+  }
+  size_t next = 0;
+  for (int n = 0; n <= SAMPLES; ++n)
+  {
+    const double t = (double)n / SAMPLES;
+    while (next < count && at[next] < t)
+    {
+      ++next;
+    }
+    double margin;
+    const int32_t label = label_at(a, b, t, &margin);
+    const int is_near = (next < count && at[next] - t < 1e-6) || (next > 0 && t - at[next - 1] < 1e-6);
+    if (margin > CLEAR && !is_near && count > 0)
+    {
+      CHECK(label == (next < count ? crossing[next].from : crossing[next - 1].to));
+    }
+    if (count == 0 && margin > CLEAR)
+    {
+      double other;
+      CHECK(label == label_at(a, b, 0, &other) || other < CLEAR);
+    }
+  }
+}
+
+static void test_clearance(const mlim_field* field, uint64_t seed)
+{
+  for (int n = 0; n < 300; ++n)
+  {
+    double point[3];
+    int clearance;
+    random_point(&seed, point);
+    const int32_t label = mlim_field_label_near(field, point, &clearance);
+    for (int s = 0; s < 20 && clearance > 0; ++s)
+    {
+      double other[3];
+      double margin;
+      for (int k = 0; k < 3; ++k)
+      {
+        other[k] = point[k] + (clearance - 1) * f.spacing[k] * (2 * random_unit(&seed) - 1);
+      }
+      CHECK(random_field_label(&f, other, &margin) == label);
+    }
+  }
+}
+
+static int32_t slab(const void* user, const double point[3])
+{
+  (void)user;
+  return point[0] < 1 ? 0 : point[0] < 1.5 ? 1 : 2;
+}
+
+/* The paper's oracle on an analytic function: looks at midpoints only. */
+static void test_bisection(void)
+{
+  const double a[3] = { 0, 0, 0 };
+  const double b[3] = { 3, 0, 0 };
+  mlim_crossing crossing[4];
+  const size_t count = mlim_oracle_bisect(slab, NULL, a, b, 1e-9, 4, crossing);
+  CHECK(count == 2);
+  CHECK(fabs(crossing[0].point[0] - 1) < 1e-8 && crossing[0].from == 0 && crossing[0].to == 1);
+  CHECK(fabs(crossing[1].point[0] - 1.5) < 1e-8 && crossing[1].from == 1 && crossing[1].to == 2);
+}
+
+int main(void)
+{
+  for (int32_t labels = 2; labels <= RANDOM_MAX_LABELS; ++labels)
+  {
+    for (int steps = 0; steps <= 4; steps += 2)
+    {
+      mlim_field* field = NULL;
+      uint64_t seed = (uint64_t)labels * 10 + (uint64_t)steps;
+      random_field_make(&f, labels, 8, steps, seed);
+      mlim_context context = { 0 };
+      CHECK(mlim_field_create(&f.grid, &context, &field) == MLIM_OK);
+      test_labels(field, seed);
+      test_clearance(field, seed);
+      for (int n = 0; n < 150; ++n)
+      {
+        double a[3];
+        double b[3];
+        random_point(&seed, a);
+        random_point(&seed, b);
+        test_segment(field, a, b);
+      }
+      mlim_field_free(field);
+    }
+  }
+  test_bisection();
+  return check_result();
+}
