@@ -18,8 +18,8 @@ static const double ROUNDING = 1e-6;
 
 enum
 {
-  MIN_OPEN_EDGES = 2,  /* so that two curves between the same junctions share no edge */
-  MIN_LOOP_EDGES = 4   /* a triangle could be a triangle of the surface */
+  MIN_OPEN_EDGES = 2, /* so that two curves between the same junctions share no edge */
+  MIN_LOOP_EDGES = 4  /* a triangle could be a triangle of the surface */
 };
 
 typedef struct examination
@@ -107,8 +107,8 @@ static mlim_status examine_others(const examination* work)
   {
     const double* center = balls->centers + 3 * i;
     mlim_point_walk walk;
-    for (int32_t j = mlim_point_grid_first(&grid, center, balls->radii[i] + largest, &walk);
-         j >= 0; j = mlim_point_grid_next(&grid, &walk))
+    for (int32_t j = mlim_point_grid_first(&grid, center, balls->radii[i] + largest, &walk); j >= 0;
+         j = mlim_point_grid_next(&grid, &walk))
     {
       const double reach = balls->radii[i] + balls->radii[j];
       const double d = center_distance(balls, (int32_t)i, j);
@@ -169,8 +169,8 @@ static int find_place(
   for (size_t piece = place->piece; piece + 1 < count; ++piece)
   {
     double part;
-    const double d = segment_distance_squared(center, curve_point(curves, curve, piece),
-      curve_point(curves, curve, piece + 1), &part);
+    const double d = segment_distance_squared(
+      center, curve_point(curves, curve, piece), curve_point(curves, curve, piece + 1), &part);
     if (d <= tolerance * tolerance && (piece > place->piece || part >= place->part - ROUNDING))
     {
       *place = (curve_place){ .piece = piece, .part = part };
@@ -188,20 +188,20 @@ static double power(const mlim_balls* balls, int32_t ball, const double point[3]
 
 /* Does the straight piece of curve stay in the union and near the chord? Its ends and the point
    where it changes from one ball's side of the radical plane to the other's decide. */
-static int is_piece_good(const examination* work, const int32_t ends[2], const double from[3],
-  const double to[3])
+static int is_piece_good(
+  const examination* work, const int32_t ends[2], const double from[3], const double to[3])
 {
   const mlim_balls* balls = work->balls;
   double part;
-  const double deviation = segment_distance_squared(to, balls->centers + 3 * (size_t)ends[0],
-    balls->centers + 3 * (size_t)ends[1], &part);
+  const double deviation = segment_distance_squared(
+    to, balls->centers + 3 * (size_t)ends[0], balls->centers + 3 * (size_t)ends[1], &part);
   const double bound = work->options->facet_distance * (1 + ROUNDING);
   const double d0 = power(balls, ends[0], from) - power(balls, ends[1], from);
   const double d1 = power(balls, ends[0], to) - power(balls, ends[1], to);
   double worst[3];
   mlim_interpolate(from, to, d0 < 0 && d1 > 0 ? d0 / (d0 - d1) : 1, worst);
   return deviation <= bound * bound &&
-    fmin(power(balls, ends[0], worst), power(balls, ends[1], worst)) <= 0;
+         fmin(power(balls, ends[0], worst), power(balls, ends[1], worst)) <= 0;
 }
 
 /* The piece of the curve from a place to the next one: are all its straight pieces good? */
@@ -235,12 +235,12 @@ static void examine_curves(const examination* work)
     for (; edge < balls->edge_count && balls->edge_curves[edge] == (int32_t)curve; ++edge)
     {
       const int32_t* ends = balls->edges + 2 * edge;
-      const int is_last = edge + 1 == balls->edge_count ||
-        balls->edge_curves[edge + 1] != (int32_t)curve;
+      const int is_last =
+        edge + 1 == balls->edge_count || balls->edge_curves[edge + 1] != (int32_t)curve;
       const curve_place begin = place;
       /* The last centre may be the curve's end, where an earlier place would be found first. */
-      const int is_found = is_last ||
-        find_place(work, curve, balls->centers + 3 * (size_t)ends[1], &place);
+      const int is_found =
+        is_last || find_place(work, curve, balls->centers + 3 * (size_t)ends[1], &place);
       if (is_last)
       {
         place = (curve_place){ .piece = count - 2, .part = 1 };
@@ -251,8 +251,8 @@ static void examine_curves(const examination* work)
           work->user, MLIM_BALLS_STRAY, ends[0], ends[1], center_distance(balls, ends[0], ends[1]));
       }
     }
-    const int is_closed = curve_point(work->curves, curve, 0) ==
-      curve_point(work->curves, curve, count - 1);
+    const int is_closed =
+      curve_point(work->curves, curve, 0) == curve_point(work->curves, curve, count - 1);
     if (edge - first < (is_closed ? MIN_LOOP_EDGES : MIN_OPEN_EDGES))
     {
       work->report(work->user, MLIM_BALLS_SHORT, (int32_t)curve, (int32_t)curve, 0);

@@ -3,6 +3,7 @@
 #include "memory.h"
 #include "nearest.h"
 #include "status.h"
+#include "vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -137,11 +138,10 @@ static void measure_edge(
   const size_t count = mlim_oracle_crossings(&exact, start, end, MAX_CROSSINGS, crossing);
   for (size_t c = 0; c < count; ++c)
   {
-    const double d =
-      mlim_nearest_distance(job->nearest, crossing[c].point, 0.25 * job->bound, job->limit);
+    const double d = mlim_nearest_distance(job->nearest, crossing[c].point, job->bound, job->limit);
     ++result->count;
     result->far_count += d > job->bound;
-    result->most = fmax(result->most, d);
+    result->most = mlim_max(result->most, d);
   }
 }
 
@@ -178,7 +178,7 @@ static mlim_status measure_distances(
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
   mlim_nearest nearest;
   mlim_status status = mlim_nearest_create(
-    mesh, grid->size, fmax(options->facet_size, 2 * grid->unit), context, &nearest);
+    mesh, grid->size, mlim_max(options->facet_size, grid->unit), context, &nearest);
   if (status != MLIM_OK)
   {
     return status;
@@ -201,7 +201,7 @@ static mlim_status measure_distances(
       mesh->certificate.grid_crossing_count += job.slices[z].count;
       mesh->certificate.far_crossing_count += job.slices[z].far_count;
       mesh->certificate.max_crossing_distance =
-        fmax(mesh->certificate.max_crossing_distance, job.slices[z].most);
+        mlim_max(mesh->certificate.max_crossing_distance, job.slices[z].most);
     }
   }
   mlim_release(job.slices);
@@ -250,7 +250,7 @@ static mlim_status compare_volumes(const mlim_field* field, mlim_context* contex
     {
       if (voxels[l] >= MIN_VOLUME_VOXELS && (int32_t)l != mlim_field_outside_label(field))
       {
-        mesh->certificate.max_volume_difference = fmax(
+        mesh->certificate.max_volume_difference = mlim_max(
           mesh->certificate.max_volume_difference, fabs(mesh->volumes[l] - volume[l]) / volume[l]);
       }
     }

@@ -14,6 +14,9 @@ static const double TINY_END = 2;
 /* Extent of a cluster: chains of near junctions must not run away. */
 static const double MAX_CLUSTER = 2;
 
+/* Squared distances that differ by less, in squared tolerances, count as equal: rounding only. */
+static const double NEARER = 1e-6;
+
 /* A set of junctions that become one; kept with its first member. */
 typedef struct cluster
 {
@@ -202,12 +205,15 @@ static mlim_status unite(cleaning* work, const int32_t junctions[2])
   return mlim_set_table_join(&work->network->table, sets[root], sets[other], sets + root);
 }
 
-/* Is a a better position for the cluster than b? On more of its faces, then nearer to its mean. */
+/* Is a a better position for the cluster than b? On more of its faces, then nearer to its mean; of
+   two members, which always are equally near, the one with smaller coordinates, since numbers of
+   points depend on the order of the labels. */
 static int is_better(const cleaning* work, const cluster* c, int32_t a, int32_t b)
 {
   const int32_t points[2] = { a, b };
   int face_counts[2] = { 0, 0 };
   double distances[2];
+  const double margin = NEARER * work->tolerance * work->tolerance;
   for (int i = 0; i < 2; ++i)
   {
     const double* point = work->network->points + 3 * (size_t)points[i];
@@ -219,8 +225,24 @@ static int is_better(const cleaning* work, const cluster* c, int32_t a, int32_t 
     const double mean[3] = { c->sum[0] / c->count, c->sum[1] / c->count, c->sum[2] / c->count };
     distances[i] = mlim_distance_squared(point, mean);
   }
-  return face_counts[0] != face_counts[1] ? face_counts[0] > face_counts[1]
-                                          : distances[0] < distances[1];
+  if (face_counts[0] != face_counts[1])
+  {
+    return face_counts[0] > face_counts[1];
+  }
+  if (fabs(distances[0] - distances[1]) > margin)
+  {
+    return distances[0] < distances[1];
+  }
+  const double* p = work->network->points + 3 * (size_t)a;
+  const double* q = work->network->points + 3 * (size_t)b;
+  for (int k = 0; k < 3; ++k)
+  {
+    if (p[k] < q[k] || p[k] > q[k])
+    {
+      return p[k] < q[k];
+    }
+  }
+  return 0;
 }
 
 /* The cluster takes the place of one of its members, so that it stays on a tie. */

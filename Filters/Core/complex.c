@@ -193,7 +193,7 @@ static int is_clear(const mlim_complex* complex, const mlim_cell* a, const mlim_
   double longest = 0;
   for (int k = 0; k < 3; ++k)
   {
-    longest = fmax(longest, fabs(a->center[k] - b->center[k]) / spacing[k]);
+    longest = mlim_max(longest, fabs(a->center[k] - b->center[k]) / spacing[k]);
   }
   return longest <= a->clearance - 1 || longest <= b->clearance - 1;
 }
@@ -302,10 +302,10 @@ mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex,
     for (int k = 0; k < 4; ++k)
     {
       const mlim_vertex* v = &complex->vertices[cell->vertices[k]];
-      least = fmin(least, mlim_distance_squared(v->point, vertex->point) - v->weight);
+      least = mlim_min(least, mlim_distance_squared(v->point, vertex->point) - v->weight);
     }
   }
-  *power = fmax(least, 0);
+  *power = mlim_max(least, 0);
   return MLIM_OK;
 }
 

@@ -17,12 +17,15 @@ typedef struct triangle
 {
   const mlim_vertex* vertex[3];
   double edge_squared[3];
-  double circumcenter[3];
+  double height; /* of the crossing above the facet's plane */
   double radius_squared;
   double shortest_squared;
   double heaviest; /* largest weight */
 } triangle;
 
+/* The dual runs through the facet's power centre, perpendicular to its plane. So the paper's distance
+   from circumcentre to crossing is the height of the crossing above the plane; said that way it
+   holds for weighted vertices too, whose circumcentre is off the dual. */
 static void measure(const mlim_complex* complex, const mlim_facet* facet, triangle* out)
 {
   int32_t id[3];
@@ -46,15 +49,19 @@ static void measure(const mlim_complex* complex, const mlim_facet* facet, triang
   for (int k = 0; k < 3; ++k)
   {
     r[k] = s * u[k] + t * v[k];
-    out->circumcenter[k] = a[k] + r[k];
   }
   out->radius_squared = mlim_dot(r, r);
+  double normal[3];
+  double to[3];
+  mlim_cross(u, v, normal);
+  mlim_subtract(facet->crossing, a, to);
+  out->height = fabs(mlim_dot(to, normal)) / sqrt(mlim_dot(normal, normal));
   out->edge_squared[0] = uu;
   out->edge_squared[1] = vv;
   out->edge_squared[2] = uu + vv - 2 * uv;
-  out->shortest_squared = fmin(uu, fmin(vv, out->edge_squared[2]));
+  out->shortest_squared = mlim_min(uu, mlim_min(vv, out->edge_squared[2]));
   out->heaviest =
-    fmax(out->vertex[0]->weight, fmax(out->vertex[1]->weight, out->vertex[2]->weight));
+    mlim_max(out->vertex[0]->weight, mlim_max(out->vertex[1]->weight, out->vertex[2]->weight));
 }
 
 /* Radius of the surface Delaunay ball: the farthest vertex, since weights make them differ. */
@@ -63,7 +70,7 @@ static double ball_radius(const triangle* t, const double crossing[3])
   double most = 0;
   for (int k = 0; k < 3; ++k)
   {
-    most = fmax(most, mlim_distance_squared(t->vertex[k]->point, crossing));
+    most = mlim_max(most, mlim_distance_squared(t->vertex[k]->point, crossing));
   }
   return sqrt(most);
 }
@@ -103,7 +110,7 @@ mlim_verdict mlim_criteria_judge(
     double bound;
   } rows[] = {
     { MLIM_BAD_SIZE, ball_radius(&t, facet->crossing), options->facet_size },
-    { MLIM_BAD_DISTANCE, mlim_distance(t.circumcenter, facet->crossing), options->facet_distance },
+    { MLIM_BAD_DISTANCE, t.height, options->facet_distance },
     { MLIM_BAD_RATIO, verdict.radius_edge_ratio, options->facet_radius_edge_ratio },
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)

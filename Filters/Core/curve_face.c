@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Ties are broken by a bonus that falls with the label, as in the whole core (field.h). Here it is
@@ -288,13 +289,33 @@ static mlim_status start(
   return MLIM_OK;
 }
 
+static int compare_points(const void* a, const void* b)
+{
+  const mlim_face_point* p = a;
+  const mlim_face_point* q = b;
+  for (int k = 0; k < 2; ++k)
+  {
+    if (p->at[k] < q->at[k] || p->at[k] > q->at[k])
+    {
+      return p->at[k] < q->at[k] ? -1 : 1;
+    }
+  }
+  return 0;
+}
+
+/* The points are sorted by place, so that their order does not depend on that of the labels. */
 mlim_status mlim_face_find(const mlim_corners* square, mlim_set_table* sets, mlim_face_work* work)
 {
   work->point_count = 0;
   size_t count;
-  const mlim_status status = start(square, 4, work, &count);
+  mlim_status status = start(square, 4, work, &count);
   const double low[2] = { 0, 0 };
-  return status ? status : find_in_square(count, square->count, 0, low, sets, work);
+  status = status ? status : find_in_square(count, square->count, 0, low, sets, work);
+  if (work->point_count > 1)
+  {
+    qsort(work->points, work->point_count, sizeof(mlim_face_point), compare_points);
+  }
+  return status;
 }
 
 /* The upper envelope of lines, walked from 0 to 1: the next winner is the one that overtakes the

@@ -2,8 +2,10 @@
    cell whose corners do not agree, and the clearances for skipping empty space. */
 #include "field_index.h"
 #include "memory.h"
+#include "plateau.h"
 #include "samples.h"
 #include "status.h"
+#include "vector.h"
 
 #include <math.h>
 
@@ -13,6 +15,7 @@ typedef struct build_job
 {
   const mlim_samples* samples;
   mlim_field* field;
+  mlim_plateau plateau;
   uint8_t* distance; /* a cell: Chebyshev distance to the nearest mixed one or to the outside */
   int has_failed;
 } build_job;
@@ -41,8 +44,9 @@ static int win_slice(const mlim_samples* samples, size_t z, uint16_t* winners)
       for (size_t x = 0; x < nx; ++x)
       {
         const int is_better = value[x] > best[x];
+        const int is_tied = value[x] == best[x];
         best[x] = is_better ? value[x] : best[x];
-        win[x] = is_better ? (uint16_t)l : win[x];
+        win[x] = is_better ? (uint16_t)l : is_tied ? (uint16_t)(win[x] | MLIM_TIED_FLAG) : win[x];
       }
     }
   }
@@ -76,6 +80,7 @@ typedef struct rivals
 static void read_corners(const build_job* job, int32_t label, size_t first, double out[8])
 {
   mlim_samples_corners(job->samples, label, first, out);
+  mlim_plateau_correct(&job->plateau, job->samples->grid, label, first, out);
 }
 
 static void find_rivals(const build_job* job, size_t first, const size_t corner[8], rivals* out)
@@ -407,7 +412,7 @@ static mlim_status start_field(
     bricks *= (size_t)field->bricks[k];
   }
   g->unit = cbrt(volume);
-  g->min_spacing = fmin(g->spacing[0], fmin(g->spacing[1], g->spacing[2]));
+  g->min_spacing = mlim_min(g->spacing[0], mlim_min(g->spacing[1], g->spacing[2]));
   field->outside_label = samples->outside_label;
   field->label_count =
     samples->label_count + (samples->outside_label == samples->label_count ? 1 : 0);
@@ -461,7 +466,12 @@ static mlim_status build_index(build_job* job, mlim_context* context)
   {
     return mlim_fail_memory(context, "the labels of the grid points");
   }
-  mlim_status status = mlim_progress(context, MLIM_STAGE_FIELD, 0.4);
+  mlim_status status = mlim_plateau_find(job->samples, context, field->winners, &job->plateau);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  status = mlim_progress(context, MLIM_STAGE_FIELD, 0.4);
   if (status != MLIM_OK)
   {
     return status;
@@ -531,6 +541,7 @@ mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim
     status = mlim_progress(context, MLIM_STAGE_FIELD, 1);
   }
 done:
+  mlim_plateau_free(&job.plateau);
   mlim_release(job.distance);
   if (status != MLIM_OK)
   {

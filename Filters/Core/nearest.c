@@ -32,8 +32,8 @@ static range bins_of_triangle(const mlim_nearest* nearest, size_t t)
     for (size_t j = 0; j < 3; ++j)
     {
       const double x = mesh->vertices[3 * (size_t)mesh->triangles[3 * t + j] + (size_t)k];
-      low = fmin(low, x);
-      high = fmax(high, x);
+      low = mlim_min(low, x);
+      high = mlim_max(high, x);
     }
     r.low[k] = bin_of(nearest, low, k);
     r.high[k] = bin_of(nearest, high, k);
@@ -119,15 +119,16 @@ static double segment_distance_squared(const double p[3], const double a[3], con
   mlim_subtract(b, a, along);
   mlim_subtract(p, a, to);
   const double length = mlim_dot(along, along);
-  const double t = length > 0 ? fmin(fmax(mlim_dot(to, along) / length, 0), 1) : 0;
+  const double t = length > 0 ? mlim_min(mlim_max(mlim_dot(to, along) / length, 0), 1) : 0;
   double q[3];
   mlim_interpolate(a, b, t, q);
   return mlim_distance_squared(p, q);
 }
 
-/* Inside the prism over the triangle the plane is nearest, else an edge. */
+/* Inside the prism over the triangle the plane is nearest, else an edge. At most `best`; a triangle
+   whose plane is farther is not looked at closely. */
 static double triangle_distance_squared(
-  const double p[3], const double a[3], const double b[3], const double c[3])
+  const double p[3], const double a[3], const double b[3], const double c[3], double best)
 {
   double u[3];
   double v[3];
@@ -138,22 +139,26 @@ static double triangle_distance_squared(
   mlim_subtract(p, a, w);
   mlim_cross(u, v, n);
   const double nn = mlim_dot(n, n);
+  const double height = mlim_dot(w, n);
+  if (height * height >= best * nn && nn > 0)
+  {
+    return best;
+  }
   if (nn > 0)
   {
     double wv[3];
     double uw[3];
     mlim_cross(w, v, wv);
     mlim_cross(u, w, uw);
-    const double s = mlim_dot(wv, n) / nn;
-    const double t = mlim_dot(uw, n) / nn;
-    if (s >= 0 && t >= 0 && s + t <= 1)
+    const double s = mlim_dot(wv, n);
+    const double t = mlim_dot(uw, n);
+    if (s >= 0 && t >= 0 && s + t <= nn)
     {
-      const double height = mlim_dot(w, n);
       return height * height / nn;
     }
   }
-  return fmin(segment_distance_squared(p, a, b),
-    fmin(segment_distance_squared(p, b, c), segment_distance_squared(p, c, a)));
+  return mlim_min(mlim_min(best, segment_distance_squared(p, a, b)),
+    mlim_min(segment_distance_squared(p, b, c), segment_distance_squared(p, c, a)));
 }
 
 static double bin_distance_squared(
@@ -163,8 +168,8 @@ static double bin_distance_squared(
   for (size_t k = nearest->offsets[bin]; k < nearest->offsets[bin + 1]; ++k)
   {
     const int32_t* t = mesh->triangles + 3 * (size_t)nearest->triangles[k];
-    best = fmin(best, triangle_distance_squared(point, mesh->vertices + 3 * (size_t)t[0],
-                        mesh->vertices + 3 * (size_t)t[1], mesh->vertices + 3 * (size_t)t[2]));
+    best = triangle_distance_squared(point, mesh->vertices + 3 * (size_t)t[0],
+      mesh->vertices + 3 * (size_t)t[1], mesh->vertices + 3 * (size_t)t[2], best);
     if (best <= enough)
     {
       break;

@@ -94,6 +94,10 @@ static int compare_segments(const void* a, const void* b)
 /* Sorts the segments and makes those with equal ends one. */
 static mlim_status unite_segments(mlim_network* network)
 {
+  if (network->segment_count == 0)
+  {
+    return MLIM_OK;
+  }
   qsort(network->segments, network->segment_count, sizeof(mlim_segment), compare_segments);
   size_t kept = 0;
   for (size_t s = 0; s < network->segment_count; ++s)

@@ -365,7 +365,7 @@ static void walk_cells(walk* w, double t, double last)
 {
   const int32_t* cells = w->field->grid.cells;
   const double longest =
-    fmax(fabs(w->direction[0]), fmax(fabs(w->direction[1]), fabs(w->direction[2])));
+    mlim_max(fabs(w->direction[0]), mlim_max(fabs(w->direction[1]), fabs(w->direction[2])));
   const double nudge = 1e-9 / longest;
   const int max_steps = 2 * (cells[0] + cells[1] + cells[2]) + 64;
   int32_t cell[3];

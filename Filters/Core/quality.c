@@ -99,9 +99,9 @@ static void measure_triangle(mlim_mesh* mesh, size_t t, double* ratio_sum)
     mlim_subtract(p[(k + 1) % 3], p[k], u);
     mlim_subtract(p[(k + 2) % 3], p[k], v);
     const double length = sqrt(mlim_dot(u, u));
-    shortest = fmin(shortest, length);
+    shortest = mlim_min(shortest, length);
     product *= length;
-    report->min_angle = fmin(report->min_angle, angle_between(u, v));
+    report->min_angle = mlim_min(report->min_angle, angle_between(u, v));
   }
   double u[3];
   double v[3];
@@ -111,7 +111,7 @@ static void measure_triangle(mlim_mesh* mesh, size_t t, double* ratio_sum)
   mlim_cross(u, v, n);
   const double ratio = product / (2 * sqrt(mlim_dot(n, n))) / shortest;
   double* worst = has_ball ? &report->max_ball_radius_edge_ratio : &report->max_radius_edge_ratio;
-  *worst = fmax(*worst, ratio);
+  *worst = mlim_max(*worst, ratio);
   *ratio_sum += ratio;
 }
 
@@ -144,7 +144,7 @@ static double smallest_dihedral(
     {
       double v[3];
       direction_into(a, b, mesh->vertices + 3 * (size_t)edges->uses[j].apex, v);
-      least = fmin(least, angle_between(u, v));
+      least = mlim_min(least, angle_between(u, v));
     }
   }
   return least;
@@ -172,8 +172,8 @@ void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges)
       end = mlim_edges_run_end(edges, (int32_t)v, first);
       if (end - first > 2)
       {
-        report->min_dihedral_angle =
-          fmin(report->min_dihedral_angle, smallest_dihedral(mesh, edges, (int32_t)v, first, end));
+        report->min_dihedral_angle = mlim_min(
+          report->min_dihedral_angle, smallest_dihedral(mesh, edges, (int32_t)v, first, end));
       }
     }
   }

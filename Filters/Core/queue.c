@@ -1,6 +1,7 @@
 #include "queue.h"
 
 #include "memory.h"
+#include "vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,8 +21,8 @@ enum
 
 void mlim_queue_start(mlim_queue* queue, const double size[3])
 {
-  *queue =
-    (mlim_queue){ .scale = ((1 << MORTON_BITS) - 1) / fmax(size[0], fmax(size[1], size[2])) };
+  *queue = (mlim_queue){ .scale = ((1 << MORTON_BITS) - 1) /
+                                  mlim_max(size[0], mlim_max(size[1], size[2])) };
 }
 
 void mlim_queue_free(mlim_queue* queue)

@@ -80,10 +80,9 @@ static mlim_status allocate_samples(mlim_radius_map* map, double step)
   map->wedges = mlim_allocate(map->sample_count, sizeof(double));
   map->ends = mlim_allocate(curves->curve_count, 2 * sizeof(int32_t));
   map->junction_limits = mlim_allocate(curves->junction_count, sizeof(double));
-  return map->points && map->arcs && map->limits && map->wedges && map->ends &&
-      map->junction_limits
-    ? MLIM_OK
-    : MLIM_OUT_OF_MEMORY;
+  return map->points && map->arcs && map->limits && map->wedges && map->ends && map->junction_limits
+           ? MLIM_OK
+           : MLIM_OUT_OF_MEMORY;
 }
 
 static void place_samples(mlim_radius_map* map, double step)
@@ -150,9 +149,9 @@ static double curve_length(const mlim_radius_map* map, size_t curve)
 /* How two places of the network lie to each other. */
 typedef enum relation
 {
-  UNRELATED, /* their distance is a limit */
+  UNRELATED,           /* their distance is a limit */
   ABREAST_OF_JUNCTION, /* on two curves from one junction: a wedge */
-  IN_LINE    /* no limit: along one curve, or round a junction */
+  IN_LINE              /* no limit: along one curve, or round a junction */
 } relation;
 
 /* From the two lengths to a common junction. */
@@ -182,7 +181,7 @@ static relation relate(const mlim_radius_map* map, size_t curve, double arc, siz
     {
       const double to = f ? other_length - other_arc : other_arc;
       const int is_common = map->ends[2 * curve + (size_t)e] >= 0 &&
-        map->ends[2 * curve + (size_t)e] == map->ends[2 * other + (size_t)f];
+                            map->ends[2 * curve + (size_t)e] == map->ends[2 * other + (size_t)f];
       if (is_common && !(curve == other && e == f) && from + to < shortest)
       {
         shortest = from + to;
@@ -224,8 +223,7 @@ static void piece_index_free(piece_index* index)
   mlim_release(index->curves);
 }
 
-static mlim_status piece_index_create(
-  const mlim_radius_map* map, double step, piece_index* index)
+static mlim_status piece_index_create(const mlim_radius_map* map, double step, piece_index* index)
 {
   const double reach = map->first_radius / DISTANCE_SHARE + step;
   index->reach = reach;
@@ -277,8 +275,7 @@ static void limit_sample(
 /* Curves that do not end at the junction limit its ball. */
 static void limit_junction(mlim_radius_map* map, const piece_index* index, size_t junction)
 {
-  const double* point =
-    map->curves->points + 3 * (size_t)map->curves->junction_points[junction];
+  const double* point = map->curves->points + 3 * (size_t)map->curves->junction_points[junction];
   mlim_point_walk walk;
   for (int32_t s = mlim_point_grid_first(&index->grid, point, index->reach, &walk); s >= 0;
        s = mlim_point_grid_next(&index->grid, &walk))
@@ -301,8 +298,8 @@ static void limit_by_length(mlim_radius_map* map, size_t curve)
   const double* first = map->points + 3 * map->offsets[curve];
   const double* last = map->points + 3 * (map->offsets[curve + 1] - 1);
   const double radius = ends[0] == ends[1]
-    ? LOOP_SHARE * length
-    : fmin(LENGTH_SHARE * length, CHORD_SHARE * mlim_distance(first, last));
+                          ? LOOP_SHARE * length
+                          : fmin(LENGTH_SHARE * length, CHORD_SHARE * mlim_distance(first, last));
   for (int e = 0; e < 2 && ends[0] >= 0; ++e)
   {
     mlim_radius_map_lower_junction(map, (size_t)ends[e], radius);

@@ -12,13 +12,13 @@ typedef struct mlim_radius_map
   double first_radius;       /* the limit where nothing is near */
   double floor_radius;       /* limits do not fall below it */
   size_t sample_count;
-  size_t* offsets;  /* per curve, one more at the end */
-  double* points;   /* 3 each */
-  double* arcs;     /* length along the curve from its start */
-  double* limits;   /* graded along the whole network */
-  double* wedges;   /* by curves that leave the same junction; graded along the curve only, so that
+  size_t* offsets; /* per curve, one more at the end */
+  double* points;  /* 3 each */
+  double* arcs;    /* length along the curve from its start */
+  double* limits;  /* graded along the whole network */
+  double* wedges;  /* by curves that leave the same junction; graded along the curve only, so that
                        the junction's own ball stays large */
-  int32_t* ends;    /* 2 per curve: its junctions; -1 for a closed curve without */
+  int32_t* ends;   /* 2 per curve: its junctions; -1 for a closed curve without */
   double* junction_limits;
 } mlim_radius_map;
 

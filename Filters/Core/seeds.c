@@ -2,6 +2,7 @@
 
 #include "memory.h"
 #include "status.h"
+#include "vector.h"
 
 #include <math.h>
 
@@ -183,7 +184,7 @@ mlim_status mlim_seeds_on_sheets(
   int32_t blocks[3];
   for (int k = 0; k < 3; ++k)
   {
-    const double points = fmin(ceil(BLOCK_SIDE * distance / grid->spacing[k]), grid->dims[k]);
+    const double points = mlim_min(ceil(BLOCK_SIDE * distance / grid->spacing[k]), grid->dims[k]);
     side[k] = points < 2 ? 2 : (int32_t)points;
     blocks[k] = (grid->dims[k] + side[k] - 1) / side[k];
   }

@@ -4,6 +4,17 @@
 
 #include <math.h>
 
+/* fmin and fmax are calls into the library, for the sake of NaN; these are one instruction. */
+static inline double mlim_min(double a, double b)
+{
+  return a < b ? a : b;
+}
+
+static inline double mlim_max(double a, double b)
+{
+  return a > b ? a : b;
+}
+
 static inline void mlim_copy(const double a[3], double out[3])
 {
   out[0] = a[0];
