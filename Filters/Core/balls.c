@@ -2,20 +2,11 @@
 #include "label_sets.h"
 #include "memory.h"
 #include "radius_map.h"
+#include "span.h"
 #include "vector.h"
 
 #include <math.h>
-#include <string.h>
 
-/* Centres of neighbours are this many radii apart: radii are two thirds of the distance, as in the
-   paper. Between 1 (centres held) and 2 (balls apart). */
-static const double CENTER_SPACING = 1.5;
-/* Where the number of balls was rounded up they are closer together, and shrink by this more than
-   their distance, so that none holds a centre: r / d = 0.87 at worst. */
-static const double CROWDED_RADIUS = 1.3;
-/* Between two junctions' balls that nearly meet one ball is enough: its two neighbours' distances
-   would be this part of CENTER_SPACING. */
-static const double SINGLE_BALL = 0.45;
 /* How far a limit falls where a condition does not hold, per round. Nearer to 1: more rounds. */
 static const double LOWER_BY = 0.8;
 /* Radii of balls that touch are lowered to this part of what would just be disjoint. */
@@ -52,8 +43,7 @@ typedef struct covering
   mlim_balls balls;
   double* arcs; /* per ball: length along its curve */
   size_t capacities[7];
-  double* sums; /* integral along one curve */
-  size_t sum_capacity;
+  mlim_span_cover cover; /* of one curve */
   size_t fault_count;
   size_t lowered_count;
 } covering;
@@ -63,7 +53,7 @@ static void covering_free(covering* work)
   mlim_radius_map_free(&work->map);
   mlim_balls_free(&work->balls);
   mlim_release(work->arcs);
-  mlim_release(work->sums);
+  mlim_span_cover_free(&work->cover);
 }
 
 static mlim_status add_ball(
@@ -105,98 +95,6 @@ static mlim_status add_edge(covering* work, int32_t a, int32_t b, int32_t curve)
   return MLIM_OK;
 }
 
-/* The part of a curve that its own balls cover, from the first one's centre to the last one's. */
-typedef struct span
-{
-  double begin;
-  double end;
-  double length; /* in units of the spacing of centres */
-} span;
-
-/* The first ball's centre is half its radius outside the junction's ball: both margins, of overlap
-   and of the centre held, are the same then, for every ratio of the radii. From the junction
-   outwards the left side grows faster than the right one. */
-static double first_arc(
-  const covering* work, size_t curve, int from_end, double junction_radius, double length)
-{
-  double low = junction_radius;
-  double high = length;
-  for (int step = 0; step < 50; ++step)
-  {
-    const double arc = 0.5 * (low + high);
-    const double radius = mlim_radius_map_radius(&work->map, curve, from_end ? length - arc : arc);
-    if (arc < junction_radius + 0.5 * radius)
-    {
-      low = arc;
-    }
-    else
-    {
-      high = arc;
-    }
-  }
-  return 0.5 * (low + high);
-}
-
-/* Integral of ds / (1.5 radius) over the span, by the midpoint rule, into work->sums. */
-static mlim_status integrate(covering* work, size_t curve, span* part, size_t* step_count)
-{
-  const size_t samples = work->map.offsets[curve + 1] - work->map.offsets[curve];
-  const size_t count = INTEGRAL_STEPS * samples;
-  if (mlim_reserve(&work->sums, &work->sum_capacity, count + 1, sizeof(double)))
-  {
-    return MLIM_OUT_OF_MEMORY;
-  }
-  const double step = (part->end - part->begin) / (double)count;
-  work->sums[0] = 0;
-  for (size_t i = 0; i < count; ++i)
-  {
-    const double arc = part->begin + ((double)i + 0.5) * step;
-    const double radius = mlim_radius_map_radius(&work->map, curve, arc);
-    work->sums[i + 1] = work->sums[i] + step / (CENTER_SPACING * radius);
-  }
-  part->length = work->sums[count];
-  *step_count = count;
-  return MLIM_OK;
-}
-
-/* Places `count` + 1 balls at equal parts of the integral, the last one only if the span is open. */
-static mlim_status place_balls(
-  covering* work, size_t curve, const span* part, size_t steps, size_t count, int is_closed)
-{
-  const double share = part->length / (double)count;
-  const double shrink = fmin(1, CROWDED_RADIUS * share);
-  const double step = (part->end - part->begin) / (double)steps;
-  mlim_status status = MLIM_OK;
-  size_t at = 0;
-  for (size_t i = 0; i < count + (is_closed ? 0 : 1) && !status; ++i)
-  {
-    const double target = share * (double)i;
-    while (at + 1 < steps && work->sums[at + 1] <= target)
-    {
-      ++at;
-    }
-    const double rest = (target - work->sums[at]) / (work->sums[at + 1] - work->sums[at]);
-    const double arc =
-      i == count ? part->end : part->begin + ((double)at + fmin(fmax(rest, 0), 1)) * step;
-    double center[3];
-    mlim_radius_map_point(&work->map, curve, arc, center);
-    const double radius = shrink * mlim_radius_map_radius(&work->map, curve, arc);
-    status = add_ball(work, center, radius, (int32_t)curve, work->curves->curve_sets[curve], arc);
-  }
-  return status;
-}
-
-/* One ball in the middle of what two junctions' balls leave free, with equal margins. */
-static mlim_status place_single(covering* work, size_t curve, const double radii[2], double length)
-{
-  const double gap = 0.5 * (length - radii[0] - radii[1]);
-  const double arc = radii[0] + gap;
-  double center[3];
-  mlim_radius_map_point(&work->map, curve, arc, center);
-  const double radius = fmax(fmin(2 * gap, 0.9 * fmin(arc, length - arc)), 0.1 * length);
-  return add_ball(work, center, radius, (int32_t)curve, work->curves->curve_sets[curve], arc);
-}
-
 static mlim_status join_balls(covering* work, size_t curve, size_t first)
 {
   const int32_t* ends = work->map.ends + 2 * curve;
@@ -214,39 +112,49 @@ static mlim_status join_balls(covering* work, size_t curve, size_t first)
                 : add_edge(work, last, ends[1] >= 0 ? ends[1] : (int32_t)first, (int32_t)curve);
 }
 
+/* A curve of the map, as a span sees it. */
+typedef struct map_curve
+{
+  const mlim_radius_map* map;
+  size_t curve;
+} map_curve;
+
+static double radius_on_curve(const void* user, double arc)
+{
+  const map_curve* on = user;
+  return mlim_radius_map_radius(on->map, on->curve, arc);
+}
+
 static mlim_status cover_curve(covering* work, size_t curve)
 {
   const mlim_radius_map* map = &work->map;
   const int32_t* ends = map->ends + 2 * curve;
   const size_t first = work->balls.ball_count;
-  const double length = map->arcs[map->offsets[curve + 1] - 1];
-  const int is_closed = ends[0] < 0;
-  const int is_return = !is_closed && ends[0] == ends[1];
-  double radii[2] = { 0, 0 };
-  span part = { .begin = 0, .end = length };
-  if (!is_closed)
+  const size_t sample_count = map->offsets[curve + 1] - map->offsets[curve];
+  const map_curve on = { .map = map, .curve = curve };
+  mlim_span span = { .length = map->arcs[map->offsets[curve + 1] - 1],
+    .is_closed = ends[0] < 0,
+    .min_count = 1,
+    .step_count = INTEGRAL_STEPS * sample_count,
+    .radius = radius_on_curve,
+    .user = &on };
+  if (span.is_closed)
   {
-    radii[0] = map->junction_limits[ends[0]];
-    radii[1] = map->junction_limits[ends[1]];
-    part.begin = first_arc(work, curve, 0, radii[0], length);
-    part.end = length - first_arc(work, curve, 1, radii[1], length);
+    span.min_count = MIN_LOOP_BALLS;
   }
-  mlim_status status = MLIM_OK;
-  size_t steps = 0;
-  if (part.end > part.begin)
+  else
   {
-    status = integrate(work, curve, &part, &steps);
+    span.end_radii[0] = map->junction_limits[ends[0]];
+    span.end_radii[1] = map->junction_limits[ends[1]];
+    span.min_count = ends[0] == ends[1] ? MIN_RETURN_BALLS : 1;
   }
-  size_t count = (size_t)fmax(1, ceil(part.length));
-  count = is_closed && count < MIN_LOOP_BALLS ? MIN_LOOP_BALLS : count;
-  count = is_return && count + 1 < MIN_RETURN_BALLS ? MIN_RETURN_BALLS - 1 : count;
-  if (!status && (part.end > part.begin) && (part.length >= SINGLE_BALL || is_closed || is_return))
+  mlim_status status = mlim_span_cover_make(&span, &work->cover);
+  for (size_t i = 0; i < work->cover.count && !status; ++i)
   {
-    status = place_balls(work, curve, &part, steps, count, is_closed);
-  }
-  else if (!status)
-  {
-    status = place_single(work, curve, radii, length);
+    double center[3];
+    mlim_radius_map_point(map, curve, work->cover.arcs[i], center);
+    status = add_ball(work, center, work->cover.radii[i], (int32_t)curve,
+      work->curves->curve_sets[curve], work->cover.arcs[i]);
   }
   return status ? status : join_balls(work, curve, first);
 }
@@ -362,20 +270,6 @@ static mlim_status cover_until_good(covering* work, mlim_context* context)
   return status;
 }
 
-/* The balls' sets are those of the curves. */
-static mlim_status copy_sets(const mlim_sets* sets, mlim_sets* out)
-{
-  int32_t* use = mlim_allocate(sets->count, sizeof(int32_t));
-  mlim_status status = MLIM_OUT_OF_MEMORY;
-  if (use)
-  {
-    memset(use, 1, sets->count * sizeof(int32_t));
-    status = mlim_sets_compact(sets, use, out);
-  }
-  mlim_release(use);
-  return status;
-}
-
 mlim_status mlim_balls_cover(
   const mlim_curves* curves, const mlim_options* options, mlim_context* context, mlim_balls* out)
 {
@@ -391,7 +285,7 @@ mlim_status mlim_balls_cover(
   mlim_status status = mlim_progress(context, MLIM_STAGE_BALLS, 0);
   status = status ? status : mlim_radius_map_create(curves, options, &work.map);
   status = status ? status : cover_until_good(&work, context);
-  status = status ? status : copy_sets(&curves->sets, &work.balls.sets);
+  status = status ? status : mlim_sets_copy(&curves->sets, &work.balls.sets);
   status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, 1);
   if (status == MLIM_OUT_OF_MEMORY)
   {

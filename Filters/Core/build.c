@@ -6,6 +6,9 @@
 #include "refine.h"
 #include "seeds.h"
 #include "status.h"
+#include "tidy.h"
+#include "verify.h"
+#include "volumes.h"
 
 #include <math.h>
 
@@ -16,6 +19,8 @@ typedef struct build
   mlim_context* context;
   mlim_oracle oracle;
   mlim_components components;
+  double* volumes; /* of the field, a label */
+  size_t* voxels;
   mlim_refinement refinement;
 } build;
 
@@ -49,60 +54,41 @@ static mlim_status seed(build* b)
            : mlim_seeds_on_sheets(complex, 2 * b->options->facet_size, b->context, &count);
 }
 
-/* Components that have no cell get their seeds again, denser than before, and refinement goes on. */
-static mlim_status rescue_components(build* b, int* is_complete)
-{
-  mlim_refinement* r = &b->refinement;
-  unsigned char* is_found = mlim_allocate(b->components.count, 1);
-  if (is_found == NULL)
-  {
-    return mlim_fail_memory(b->context, "the components of the labels");
-  }
-  size_t lost;
-  size_t count = 0;
-  mlim_certificate_find_components(
-    &r->complex, &b->components, b->options->min_component_voxels, is_found, &lost);
-  mlim_status status = MLIM_OK;
-  if (lost > 0)
-  {
-    for (size_t c = 0; c < b->components.count; ++c)
-    {
-      is_found[c] = !is_found[c];
-    }
-    status = mlim_seeds_on_components(
-      &r->complex, &b->components, is_found, b->options->min_component_voxels, b->context, &count);
-  }
-  *is_complete = count == 0;
-  mlim_release(is_found);
-  return status;
-}
-
 static mlim_status refine_all(build* b)
 {
   enum
   {
-    MAX_RESCUES = 4 /* seeds are the same each time, so more rounds would find no room for them */
+    /* Most meshes are done after two or three; each later one changes less. */
+    MAX_ROUNDS = 8
   };
   mlim_status status = seed(b);
   if (status == MLIM_OK)
   {
     status = mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context);
   }
-  int is_complete = 0;
-  for (int round = 0; round < MAX_RESCUES && status == MLIM_OK && !is_complete; ++round)
+  mlim_verification verification = { .refinement = &b->refinement,
+    .components = &b->components,
+    .volumes = b->volumes,
+    .voxels = b->voxels };
+  size_t found = 1;
+  for (int round = 0; round < MAX_ROUNDS && status == MLIM_OK && found > 0; ++round)
   {
     status = mlim_refine_run(&b->refinement, MLIM_GOAL_QUALITY, b->context);
     if (status == MLIM_OK)
     {
-      status = rescue_components(b, &is_complete);
+      verification.round = round;
+      status = mlim_verify_round(&verification, b->context, &found);
     }
   }
-  return status;
+  return status == MLIM_OK && found > 0
+           ? mlim_refine_run(&b->refinement, MLIM_GOAL_QUALITY, b->context)
+           : status;
 }
 
 static void count_unresolved(const build* b, mlim_report* report)
 {
   const mlim_complex* complex = &b->refinement.complex;
+  report->unresolved_patch_count = mlim_tidy_count_strays(complex);
   for (size_t f = 1; f < complex->facet_count; ++f)
   {
     const mlim_facet* facet = &complex->facets[f];
@@ -116,16 +102,14 @@ static void count_unresolved(const build* b, mlim_report* report)
       case MLIM_BAD_CROSSINGS:
         ++report->unresolved_crossing_count;
         break;
-      case MLIM_BAD_FAR:
-      case MLIM_BAD_SHEET:
-        ++report->unresolved_patch_count;
-        break;
       case MLIM_BAD_SIZE:
         ++report->unresolved_size_count;
         break;
       case MLIM_BAD_DISTANCE:
         ++report->unresolved_distance_count;
         break;
+      case MLIM_BAD_FAR:
+      case MLIM_BAD_SHEET: /* counted by the labels of the cells, below */
       case MLIM_BAD_RATIO:
       case MLIM_BAD_DISK:
       case MLIM_BAD_NONE:
@@ -147,7 +131,12 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
     return status;
   }
   mlim_edges edges = { 0 };
-  status = mlim_mesh_read(&b->refinement.complex, b->context, out);
+  size_t relabeled = 0;
+  status = mlim_tidy_run(&b->refinement, b->context, &relabeled);
+  if (status == MLIM_OK)
+  {
+    status = mlim_mesh_read(&b->refinement.complex, b->context, out);
+  }
   if (status == MLIM_OK)
   {
     status = mlim_edges_create(out, b->context, &edges);
@@ -161,6 +150,7 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
     mlim_quality_measure(out, &edges);
     out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &edges);
     out->report.insertion_count = b->refinement.insertion_count;
+    out->report.relabeled_cell_count = relabeled;
     count_unresolved(b, &out->report);
     status =
       mlim_refine_count_disks(&b->refinement, b->context, &out->certificate.disk_failure_count);
@@ -168,10 +158,24 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
   mlim_edges_free(&edges);
   if (status == MLIM_OK)
   {
-    status =
-      mlim_certificate_measure(&b->refinement.complex, &b->components, b->options, b->context, out);
+    const mlim_certificate_input input = { .complex = &b->refinement.complex,
+      .components = &b->components,
+      .options = b->options,
+      .volumes = b->volumes,
+      .voxels = b->voxels };
+    status = mlim_certificate_measure(&input, b->context, out);
   }
   return status == MLIM_OK ? mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, 1) : status;
+}
+
+static mlim_status measure_field(build* b)
+{
+  const size_t labels = (size_t)mlim_field_label_count(b->field);
+  b->volumes = mlim_allocate(labels, sizeof *b->volumes);
+  b->voxels = mlim_allocate(labels, sizeof *b->voxels);
+  return b->volumes != NULL && b->voxels != NULL
+           ? mlim_volumes_of_field(b->field, b->context, b->volumes, b->voxels)
+           : mlim_fail_memory(b->context, "the volumes of the labels");
 }
 
 mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
@@ -205,6 +209,10 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
   }
   if (status == MLIM_OK)
   {
+    status = measure_field(&b);
+  }
+  if (status == MLIM_OK)
+  {
     status = mlim_refine_start(&b.refinement, &b.oracle, balls, &complete, context);
   }
   mlim_status outcome = status;
@@ -219,6 +227,8 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
   }
   mlim_refine_free(&b.refinement);
   mlim_components_free(&b.components);
+  mlim_release(b.volumes);
+  mlim_release(b.voxels);
   if (outcome != MLIM_OK && outcome != MLIM_VERTEX_LIMIT)
   {
     mlim_mesh_free(out);

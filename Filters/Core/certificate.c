@@ -1,5 +1,6 @@
 #include "certificate.h"
 
+#include "crossings.h"
 #include "memory.h"
 #include "nearest.h"
 #include "status.h"
@@ -8,8 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A label needs this many voxels before its volume is compared: below, the staircase of the voxels
-   alone is a few percent. */
+/* A label needs this many voxels before its volume is compared. */
 static const size_t MIN_VOLUME_VOXELS = 1000;
 
 /* ---- components ---- */
@@ -116,59 +116,35 @@ typedef struct distance_job
   slice_result* slices;
 } distance_job;
 
-static void measure_edge(
-  const distance_job* job, const int32_t point[3], int axis, slice_result* result)
+typedef struct distance_visit
 {
-  enum
-  {
-    MAX_CROSSINGS = 8
-  };
-  const mlim_field_grid* grid = mlim_field_grid_of(job->complex->oracle.field);
-  double start[3];
-  double end[3];
-  for (int k = 0; k < 3; ++k)
-  {
-    start[k] = point[k] * grid->spacing[k];
-    end[k] = (point[k] + (k == axis)) * grid->spacing[k];
-  }
-  const mlim_oracle exact = { .field = job->complex->oracle.field,
-    .tolerance = job->complex->oracle.tolerance,
-    .mode = MLIM_ORACLE_EXACT };
-  mlim_crossing crossing[MAX_CROSSINGS];
-  const size_t count = mlim_oracle_crossings(&exact, start, end, MAX_CROSSINGS, crossing);
-  for (size_t c = 0; c < count; ++c)
-  {
-    const double d = mlim_nearest_distance(job->nearest, crossing[c].point, job->bound, job->limit);
-    ++result->count;
-    result->far_count += d > job->bound;
-    result->most = mlim_max(result->most, d);
-  }
+  const distance_job* job;
+  slice_result* result;
+} distance_visit;
+
+static void visit_crossing(
+  void* user, const int32_t low[3], const int32_t high[3], const mlim_crossing* crossing)
+{
+  (void)low;
+  (void)high;
+  const distance_visit* visit = (const distance_visit*)user;
+  const double d = mlim_nearest_distance(
+    visit->job->nearest, crossing->point, visit->job->bound, visit->job->limit);
+  ++visit->result->count;
+  visit->result->far_count += d > visit->job->bound;
+  visit->result->most = mlim_max(visit->result->most, d);
 }
 
 static void distance_body(void* data, size_t begin, size_t end)
 {
   const distance_job* job = (const distance_job*)data;
-  const mlim_field* field = job->complex->oracle.field;
-  const int32_t* dims = mlim_field_grid_of(field)->dims;
+  const mlim_oracle exact = { .field = job->complex->oracle.field,
+    .tolerance = job->complex->oracle.tolerance,
+    .mode = MLIM_ORACLE_EXACT };
   for (size_t z = begin; z < end; ++z)
   {
-    int32_t p[3] = { 0, 0, (int32_t)z };
-    for (p[1] = 0; p[1] < dims[1]; ++p[1])
-    {
-      for (p[0] = 0; p[0] < dims[0]; ++p[0])
-      {
-        const int32_t label = mlim_field_point_label(field, p);
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          int32_t q[3] = { p[0], p[1], p[2] };
-          ++q[axis];
-          if (q[axis] < dims[axis] && mlim_field_point_label(field, q) != label)
-          {
-            measure_edge(job, p, axis, &job->slices[z]);
-          }
-        }
-      }
-    }
+    distance_visit visit = { .job = job, .result = &job->slices[z] };
+    mlim_crossings_of_slice(&exact, (int32_t)z, visit_crossing, &visit);
   }
 }
 
@@ -211,58 +187,25 @@ static mlim_status measure_distances(
 
 /* ---- volumes ---- */
 
-/* Volume of each label in the image: a grid point stands for the part of its voxel in the box. */
-static void image_volumes(const mlim_field* field, double* volume, size_t* voxels)
+static void compare_volumes(
+  const mlim_field* field, const double* volumes, const size_t* voxels, mlim_mesh* mesh)
 {
-  const mlim_field_grid* grid = mlim_field_grid_of(field);
-  const double whole = grid->spacing[0] * grid->spacing[1] * grid->spacing[2];
-  int32_t p[3];
-  for (p[2] = 0; p[2] < grid->dims[2]; ++p[2])
+  for (size_t l = 0; l < mesh->label_count; ++l)
   {
-    const double wz = p[2] == 0 || p[2] == grid->cells[2] ? 0.5 : 1;
-    for (p[1] = 0; p[1] < grid->dims[1]; ++p[1])
+    if (voxels[l] >= MIN_VOLUME_VOXELS && (int32_t)l != mlim_field_outside_label(field))
     {
-      const double wy = p[1] == 0 || p[1] == grid->cells[1] ? 0.5 : 1;
-      for (p[0] = 0; p[0] < grid->dims[0]; ++p[0])
-      {
-        const double wx = p[0] == 0 || p[0] == grid->cells[0] ? 0.5 : 1;
-        const int32_t label = mlim_field_point_label(field, p);
-        volume[label] += wx * wy * wz * whole;
-        ++voxels[label];
-      }
+      mesh->certificate.max_volume_difference = mlim_max(
+        mesh->certificate.max_volume_difference, fabs(mesh->volumes[l] - volumes[l]) / volumes[l]);
     }
   }
 }
 
-static mlim_status compare_volumes(const mlim_field* field, mlim_context* context, mlim_mesh* mesh)
+mlim_status mlim_certificate_measure(
+  const mlim_certificate_input* input, mlim_context* context, mlim_mesh* mesh)
 {
-  double* volume = mlim_allocate_zeroed(mesh->label_count, sizeof *volume);
-  size_t* voxels = mlim_allocate_zeroed(mesh->label_count, sizeof *voxels);
-  mlim_status status = MLIM_OK;
-  if (volume == NULL || voxels == NULL)
-  {
-    status = mlim_fail_memory(context, "the volumes of the certificate");
-  }
-  else
-  {
-    image_volumes(field, volume, voxels);
-    for (size_t l = 0; l < mesh->label_count; ++l)
-    {
-      if (voxels[l] >= MIN_VOLUME_VOXELS && (int32_t)l != mlim_field_outside_label(field))
-      {
-        mesh->certificate.max_volume_difference = mlim_max(
-          mesh->certificate.max_volume_difference, fabs(mesh->volumes[l] - volume[l]) / volume[l]);
-      }
-    }
-  }
-  mlim_release(volume);
-  mlim_release(voxels);
-  return status;
-}
-
-mlim_status mlim_certificate_measure(const mlim_complex* complex, const mlim_components* components,
-  const mlim_options* options, mlim_context* context, mlim_mesh* mesh)
-{
+  const mlim_complex* complex = input->complex;
+  const mlim_components* components = input->components;
+  const mlim_options* options = input->options;
   unsigned char* is_found = mlim_allocate(components->count, 1);
   unsigned char* state = mlim_allocate(mesh->label_count, 1);
   mlim_status status = MLIM_OK;
@@ -275,11 +218,8 @@ mlim_status mlim_certificate_measure(const mlim_complex* complex, const mlim_com
     &mesh->certificate.lost_component_count);
   count_labels(
     components, options->min_component_voxels, is_found, mesh, state, &mesh->certificate);
-  status = compare_volumes(complex->oracle.field, context, mesh);
-  if (status == MLIM_OK)
-  {
-    status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, 0.4);
-  }
+  compare_volumes(complex->oracle.field, input->volumes, input->voxels, mesh);
+  status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, 0.4);
   if (status == MLIM_OK)
   {
     status = measure_distances(complex, options, context, mesh);

@@ -11,8 +11,17 @@
 void mlim_certificate_find_components(const mlim_complex* complex,
   const mlim_components* components, size_t min_voxels, unsigned char* is_found, size_t* lost);
 
+typedef struct mlim_certificate_input
+{
+  const mlim_complex* complex;
+  const mlim_components* components;
+  const mlim_options* options;
+  const double* volumes; /* of the field, a label */
+  const size_t* voxels;  /* a label */
+} mlim_certificate_input;
+
 /* Fills labels, components, distances and volumes of mesh->certificate. */
-mlim_status mlim_certificate_measure(const mlim_complex* complex, const mlim_components* components,
-  const mlim_options* options, mlim_context* context, mlim_mesh* mesh);
+mlim_status mlim_certificate_measure(
+  const mlim_certificate_input* input, mlim_context* context, mlim_mesh* mesh);
 
 #endif

@@ -287,7 +287,10 @@ static size_t drop_chains(cleaning* work)
     const int is_end = a != b && (work->degrees[a] == 1 || work->degrees[b] == 1);
     const int is_closed = find_root(work, a) == find_root(work, b);
     const double length = work->lengths[c] / work->tolerance;
-    work->is_dropped[c] = (is_closed && length < TINY_CHAIN) || (is_end && length < TINY_END);
+    /* A chain with two free ends is a closed one that fell together. */
+    const int is_free = is_end && work->degrees[a] == 1 && work->degrees[b] == 1;
+    work->is_dropped[c] =
+      ((is_closed || is_free) && length < TINY_CHAIN) || (is_end && length < TINY_END);
     count += work->is_dropped[c];
   }
   return count;

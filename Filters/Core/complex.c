@@ -22,12 +22,19 @@ mlim_status mlim_complex_create(
   {
     return status;
   }
-  if (mlim_reserve(
+  const size_t labels = (size_t)mlim_field_label_count(oracle->field);
+  out->distance_shares = mlim_allocate(labels, sizeof *out->distance_shares);
+  if (out->distance_shares == NULL ||
+      mlim_reserve(
         &out->vertices, &out->vertex_capacity, MLIM_FAR_VERTICES, sizeof *out->vertices) ||
       mlim_reserve(&out->facets, &out->facet_capacity, 1, sizeof *out->facets))
   {
     mlim_complex_free(out);
     return mlim_fail_memory(context, "the triangulation");
+  }
+  for (size_t l = 0; l < labels; ++l)
+  {
+    out->distance_shares[l] = 1;
   }
   out->facets[0] = (mlim_facet){ 0 };
   out->facet_count = 1;
@@ -43,6 +50,7 @@ mlim_status mlim_complex_create(
 void mlim_complex_free(mlim_complex* complex)
 {
   mlim_delaunay_free(complex->delaunay);
+  mlim_release(complex->distance_shares);
   mlim_release(complex->vertices);
   mlim_release(complex->cells);
   mlim_release(complex->facets);

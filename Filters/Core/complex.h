@@ -65,6 +65,7 @@ typedef struct mlim_complex
 {
   mlim_oracle oracle;
   const mlim_balls* balls; /* borrowed */
+  double* distance_shares; /* a label: part of facet_distance allowed at its sheets; 1 at first */
   mlim_delaunay* delaunay;
   mlim_vertex* vertices;
   size_t vertex_count, vertex_capacity;

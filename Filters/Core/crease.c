@@ -88,8 +88,8 @@ static mlim_status join_two(mlim_cell_work* work, size_t begin, int* is_done)
   return *is_done ? mlim_cell_emit(work, a, b, set) : MLIM_OK;
 }
 
-/* One inner point, and as many points on the edges as it has labels, each pair once: the inner
-   point is joined to all. */
+/* Without an inner point curves cross the square in pairs of labels. With one, and as many points on
+   the edges as it has labels, each pair once, the inner point is joined to all. */
 static mlim_status join_fan(mlim_cell_work* work, size_t begin, int* is_done)
 {
   int32_t inner = -1;
@@ -104,12 +104,13 @@ static mlim_status join_fan(mlim_cell_work* work, size_t begin, int* is_done)
       inner = work->stack[i];
     }
   }
-  size_t label_count = 0;
-  if (inner >= 0)
+  if (inner < 0)
   {
-    mlim_set_labels(&work->network->table.sets, work->points[inner].set, &label_count);
+    return mlim_cell_join_pairs(work, begin, is_done);
   }
-  if (inner < 0 || work->stack_count - begin != label_count)
+  size_t label_count = 0;
+  mlim_set_labels(&work->network->table.sets, work->points[inner].set, &label_count);
+  if (work->stack_count - begin != label_count)
   {
     return MLIM_OK;
   }

@@ -90,6 +90,15 @@ static mlim_badness judge_topology(
   return facet->is_multiple ? MLIM_BAD_CROSSINGS : is_foreign ? MLIM_BAD_SHEET : MLIM_BAD_NONE;
 }
 
+/* A region that would lose too much volume allows a part of the distance only. */
+static double distance_bound(
+  const mlim_complex* complex, const mlim_options* options, const mlim_sheet* sheet)
+{
+  const double low = complex->distance_shares[sheet->low];
+  const double high = complex->distance_shares[sheet->high];
+  return options->facet_distance * mlim_min(low, high);
+}
+
 mlim_verdict mlim_criteria_judge(
   const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet)
 {
@@ -110,7 +119,7 @@ mlim_verdict mlim_criteria_judge(
     double bound;
   } rows[] = {
     { MLIM_BAD_SIZE, ball_radius(&t, facet->crossing), options->facet_size },
-    { MLIM_BAD_DISTANCE, t.height, options->facet_distance },
+    { MLIM_BAD_DISTANCE, t.height, distance_bound(complex, options, &facet->sheet) },
     { MLIM_BAD_RATIO, verdict.radius_edge_ratio, options->facet_radius_edge_ratio },
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)

@@ -353,8 +353,7 @@ static mlim_status join_two(mlim_cell_work* work, size_t begin, int* is_done)
   return *is_done ? mlim_cell_emit(work, a, b, set) : MLIM_OK;
 }
 
-/* Joins the points in pairs of equal sets if each set occurs exactly twice. */
-static mlim_status join_pairs(mlim_cell_work* work, size_t begin, int* is_done)
+mlim_status mlim_cell_join_pairs(mlim_cell_work* work, size_t begin, int* is_done)
 {
   for (size_t i = begin; i < work->stack_count; ++i)
   {
@@ -446,7 +445,7 @@ static mlim_status trace(
   }
   else if (depth == MAX_SPLIT_DEPTH)
   {
-    status = join_pairs(work, begin, &is_done);
+    status = mlim_cell_join_pairs(work, begin, &is_done);
   }
   if (status || is_done)
   {

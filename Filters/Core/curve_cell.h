@@ -65,6 +65,10 @@ mlim_status mlim_cell_weld(mlim_cell_work* work, size_t begin);
 /* Emits a segment between two points, refined until it follows the tie. */
 mlim_status mlim_cell_emit(mlim_cell_work* work, int32_t a, int32_t b, int32_t set);
 
+/* Joins the points of the list [begin, top of the stack) in pairs of equal sets if each set occurs
+   exactly twice; *is_done tells. */
+mlim_status mlim_cell_join_pairs(mlim_cell_work* work, size_t begin, int* is_done);
+
 /* Emits one point in the middle of the list [begin, top of the stack), with the labels of all and
    joined to all. */
 mlim_status mlim_cell_emit_star(mlim_cell_work* work, size_t begin, double size);

@@ -15,6 +15,13 @@ enum
 /* Of the stage's time; the rest is welding and growing. For the progress bar only. */
 static const double TRACING_SHARE = 0.9;
 
+/* Length on both sides of a corner over which its angle is seen, in spacings: below a cell, above the
+   noise of the interpolants' kinks on the faces of cells. */
+static const double CORNER_REACH = 0.4;
+/* Width of a detour, of junction_merge_tolerance: small against what merging changes, and as wide as
+   the smallest balls can cover. */
+static const double DETOUR_SHARE = 0.4;
+
 void mlim_curves_free(mlim_curves* curves)
 {
   mlim_release(curves->points);
@@ -107,28 +114,49 @@ static mlim_status trace_all(const mlim_field* field, mlim_context* context, mli
   return status;
 }
 
-/* Welds, then cleans until nothing is too small. The last chains are the curves. */
+static mlim_status regrow(
+  const mlim_network* network, const unsigned char* is_corner, mlim_chains* chains)
+{
+  mlim_chains_free(chains);
+  return mlim_chains_grow(network, is_corner, chains);
+}
+
+/* Welds, takes out detours, then cleans until nothing is too small. */
 static mlim_status make_chains(
   const mlim_field_grid* grid, const mlim_options* options, mlim_network* network, mlim_chains* out)
 {
   const double weld_distance = MLIM_WELD_DISTANCE * grid->min_spacing;
+  const double tolerance = options->junction_merge_tolerance;
   mlim_status status = mlim_network_weld(network, weld_distance);
-  if (!status)
-  {
-    status = mlim_chains_grow(network, out);
-  }
+  status = status ? status : regrow(network, NULL, out);
   int has_changed = 1;
   for (int round = 0; round < MAX_CLEAN_ROUNDS && has_changed && !status; ++round)
   {
+    int is_cut = 0;
+    status = mlim_network_clean(network, out, tolerance, grid->size, &has_changed);
+    status = status ? status : mlim_network_weld(network, weld_distance);
+    status = status ? status : regrow(network, NULL, out);
     status =
-      mlim_network_clean(network, out, options->junction_merge_tolerance, grid->size, &has_changed);
-    if (!status && has_changed)
-    {
-      mlim_chains_free(out);
-      status = mlim_network_weld(network, weld_distance);
-      status = status ? status : mlim_chains_grow(network, out);
-    }
+      status ? status : mlim_network_cut_detours(network, out, DETOUR_SHARE * tolerance, &is_cut);
+    status = status ? status : mlim_network_weld(network, weld_distance);
+    status = status ? status : regrow(network, NULL, out);
+    has_changed = has_changed || is_cut;
   }
+  return status;
+}
+
+/* Sharp corners become junctions. */
+static mlim_status cut_at_corners(
+  const mlim_field_grid* grid, const mlim_network* network, mlim_chains* chains)
+{
+  unsigned char* is_corner = mlim_allocate_zeroed(network->point_count, 1);
+  mlim_status status = MLIM_OUT_OF_MEMORY;
+  if (is_corner)
+  {
+    mlim_chains_mark_corners(network, chains, CORNER_REACH * grid->unit, is_corner);
+    status = regrow(network, is_corner, chains);
+  }
+  mlim_release(is_corner);
   return status;
 }
 
@@ -238,6 +266,7 @@ mlim_status mlim_curves_extract(
   mlim_status status = mlim_progress(context, MLIM_STAGE_CURVES, 0);
   status = status ? status : trace_all(field, context, &network);
   status = status ? status : make_chains(mlim_field_grid_of(field), options, &network, &chains);
+  status = status ? status : cut_at_corners(mlim_field_grid_of(field), &network, &chains);
   status = status ? status : join_junction_sets(&network, &chains);
   status = status ? status : write_curves(&network, &chains, &curves);
   status = status ? status : mlim_progress(context, MLIM_STAGE_CURVES, 1);

@@ -84,7 +84,7 @@ static int visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_st
     {
       failed |= push(&star->facets, &star->facet_count, &star->facet_capacity, cell->facets[k]);
     }
-    if (is_restricted(complex, cell, k) && id < other)
+    if (complex->cells[other].label != cell->label && id < other)
     {
       for (int j = 0; j < 4; ++j)
       {

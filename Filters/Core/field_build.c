@@ -77,10 +77,17 @@ typedef struct rivals
   double best[8]; /* the largest value at each corner */
 } rivals;
 
-static void read_corners(const build_job* job, int32_t label, size_t first, double out[8])
+static void read_corners(
+  const build_job* job, int32_t label, size_t first, const size_t corner[8], double out[8])
 {
   mlim_samples_corners(job->samples, label, first, out);
-  mlim_plateau_correct(&job->plateau, job->samples->grid, label, first, out);
+  for (int c = 0; c < 8 && job->plateau.count > 0; ++c)
+  {
+    if (job->field->winners[first + corner[c]] & MLIM_TIED_FLAG)
+    {
+      out[c] += mlim_plateau_bonus(&job->plateau, first + corner[c], label);
+    }
+  }
 }
 
 static void find_rivals(const build_job* job, size_t first, const size_t corner[8], rivals* out)
@@ -88,7 +95,7 @@ static void find_rivals(const build_job* job, size_t first, const size_t corner[
   out->count = 0;
   for (int c = 0; c < 8; ++c)
   {
-    const int32_t label = job->field->winners[first + corner[c]];
+    const int32_t label = job->field->winners[first + corner[c]] & ~MLIM_TIED_FLAG;
     int32_t r = 0;
     while (r < out->count && out->labels[r] != label)
     {
@@ -97,7 +104,7 @@ static void find_rivals(const build_job* job, size_t first, const size_t corner[
     if (r == out->count)
     {
       out->labels[r] = label;
-      read_corners(job, label, first, out->values[r]);
+      read_corners(job, label, first, corner, out->values[r]);
       ++out->count;
     }
     out->best[c] = out->values[r][c];
@@ -162,7 +169,7 @@ static uint32_t add_mixed(
       continue; /* the outside has no values of its own */
     }
     double value[8];
-    read_corners(job, l, first, value);
+    read_corners(job, l, first, corner, value);
     if (!is_candidate(&rival, l, value))
     {
       continue;
@@ -231,9 +238,10 @@ static void fill_brick(const build_job* job, const int32_t brick[3], const size_
     int differs = 0;
     for (int c = 1; c < 8; ++c)
     {
-      differs |= win[corner[c]] ^ win[0];
+      differs |= (win[corner[c]] ^ win[0]) & ~MLIM_TIED_FLAG;
     }
-    words[slot] = differs ? add_mixed(job, layer, first, corner) : win[0];
+    words[slot] =
+      differs ? add_mixed(job, layer, first, corner) : (uint32_t)(win[0] & ~MLIM_TIED_FLAG);
     if (layer->has_failed)
     {
       return;
@@ -487,6 +495,12 @@ static mlim_status build_index(build_job* job, mlim_context* context)
     {
       field->max_candidates = field->layers[z].max_candidates;
     }
+  }
+  const size_t points =
+    (size_t)field->grid.dims[0] * (size_t)field->grid.dims[1] * (size_t)field->grid.dims[2];
+  for (size_t p = 0; p < points; ++p)
+  {
+    field->winners[p] = (uint16_t)(field->winners[p] & ~MLIM_TIED_FLAG);
   }
   status = mlim_progress(context, MLIM_STAGE_FIELD, 0.8);
   return status != MLIM_OK ? status : measure_clearances(field, job->distance, context);

@@ -108,7 +108,8 @@ static void grow_chain(growth* g, int32_t start, int32_t segment)
   chains->offsets[chains->count] = g->point_count;
 }
 
-mlim_status mlim_chains_grow(const mlim_network* network, mlim_chains* out)
+mlim_status mlim_chains_grow(
+  const mlim_network* network, const unsigned char* is_corner, mlim_chains* out)
 {
   growth g;
   const mlim_status status = growth_create(network, &g);
@@ -119,7 +120,7 @@ mlim_status mlim_chains_grow(const mlim_network* network, mlim_chains* out)
   }
   for (size_t p = 0; p < network->point_count; ++p)
   {
-    g.chains.is_junction[p] = (unsigned char)is_junction(&g, p);
+    g.chains.is_junction[p] = (unsigned char)(is_junction(&g, p) || (is_corner && is_corner[p]));
   }
   for (size_t p = 0; p < network->point_count; ++p)
   {

@@ -229,3 +229,19 @@ mlim_status mlim_sets_compact(const mlim_sets* sets, int32_t* use, mlim_sets* ou
   *out = copy;
   return MLIM_OK;
 }
+
+mlim_status mlim_sets_copy(const mlim_sets* sets, mlim_sets* out)
+{
+  int32_t* use = mlim_allocate(sets->count, sizeof(int32_t));
+  mlim_status status = MLIM_OUT_OF_MEMORY;
+  if (use)
+  {
+    for (size_t s = 0; s < sets->count; ++s)
+    {
+      use[s] = 1;
+    }
+    status = mlim_sets_compact(sets, use, out);
+  }
+  mlim_release(use);
+  return status;
+}

@@ -32,6 +32,8 @@ const int32_t* mlim_set_labels(const mlim_sets* sets, int32_t set, size_t* count
    use[s] is the new number plus 1. */
 mlim_status mlim_sets_compact(const mlim_sets* sets, int32_t* use, mlim_sets* out);
 
+mlim_status mlim_sets_copy(const mlim_sets* sets, mlim_sets* out);
+
 void mlim_sets_free(mlim_sets* sets);
 
 #endif

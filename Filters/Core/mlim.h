@@ -155,6 +155,9 @@ extern "C"
     double crossing_tolerance;       /* length at which the search of a crossing stops; > 0 */
     double junction_merge_tolerance; /* junctions closer than this become one; >= 0 */
     double smallest_distance;        /* no two vertices are made closer than this; > 0 */
+    double
+      volume_tolerance; /* regions are meshed finer than facet_distance where their volume would
+                              differ more than this from the image's, relative; in [0, 1), 0: off */
     mlim_oracle_mode oracle_mode;
     size_t vertex_limit;         /* largest number of vertices; > 0 */
     size_t min_component_voxels; /* smaller components need not be in the mesh; >= 1 */
@@ -165,7 +168,8 @@ extern "C"
   mlim_options mlim_options_default(const mlim_field* field);
   /* Fills in each length that is 0 (junction_merge_tolerance: below 0): facet_size = 2 spacings,
    facet_distance = facet_size / 8, edge_size = facet_size, crossing_tolerance = 1e-6,
-   junction_merge_tolerance = 0.25, smallest_distance = 0.1 spacings. Then checks every option. */
+   junction_merge_tolerance = 0.25 spacings, smallest_distance = facet_size / 8 but at most 0.5
+   spacings. Then checks every option. */
   mlim_status mlim_options_complete(
     const mlim_field* field, mlim_context* context, mlim_options* options);
 
@@ -248,6 +252,7 @@ extern "C"
     size_t unresolved_ratio_count;      /* without a ball vertex */
     size_t unresolved_ball_ratio_count; /* with a ball vertex: quality gives way near balls */
     size_t split_ball_count;
+    size_t relabeled_cell_count;       /* to mend topology below the smallest distance */
     double max_radius_edge_ratio;      /* triangles without a ball vertex */
     double mean_radius_edge_ratio;     /* all triangles */
     double max_ball_radius_edge_ratio; /* triangles with a ball vertex */

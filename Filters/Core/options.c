@@ -1,5 +1,6 @@
 #include "field.h"
 #include "status.h"
+#include "vector.h"
 
 #include <math.h>
 
@@ -8,13 +9,16 @@ static const double FACET_SIZE = 2;
 static const double FACET_DISTANCE_PART = 0.125; /* of facet_size: flat to about 1 in 8 */
 static const double CROSSING_TOLERANCE = 1e-6;
 static const double JUNCTION_MERGE_TOLERANCE = 0.25;
-static const double SMALLEST_DISTANCE = 0.1;
+static const double SMALLEST_PART =
+  0.125; /* of facet_size: a finer spot costs a fan of triangles */
+static const double LARGEST_SMALLEST = 0.5; /* what the voxels separate is not given up */
 
 mlim_options mlim_options_default(const mlim_field* field)
 {
   mlim_options options = { .facet_radius_edge_ratio = 1,
     .ball_radius_scale = 1,
     .junction_merge_tolerance = -1,
+    .volume_tolerance = 0.02,
     .oracle_mode = MLIM_ORACLE_EXACT,
     .vertex_limit = 20000000,
     .min_component_voxels = 30 };
@@ -74,6 +78,10 @@ static mlim_status check_options(mlim_context* context, const mlim_options* o)
   {
     status = check_range(context, "BallRadiusScale", o->ball_radius_scale, 0.01, 1);
   }
+  if (status == MLIM_OK)
+  {
+    status = check_range(context, "VolumeTolerance", o->volume_tolerance, 0, 0.999);
+  }
   if (status == MLIM_OK && (o->vertex_limit < 1 || o->vertex_limit > 1000000000))
   {
     status = mlim_fail(context, MLIM_INVALID_ARGUMENT,
@@ -116,6 +124,7 @@ mlim_status mlim_options_complete(
   {
     options->junction_merge_tolerance = JUNCTION_MERGE_TOLERANCE * unit;
   }
-  options->smallest_distance = or_default(options->smallest_distance, SMALLEST_DISTANCE * unit);
+  options->smallest_distance = or_default(options->smallest_distance,
+    mlim_min(SMALLEST_PART * options->facet_size, LARGEST_SMALLEST * unit));
   return check_options(context, options);
 }

@@ -3,66 +3,45 @@
 #include "memory.h"
 #include "status.h"
 
-#include <string.h>
+#include <limits.h>
 
-/* Gauss-Seidel sweeps, forward and back: a plateau of 20 cells across is smooth after them; beyond,
-   the middle is still split by the side that is nearer. */
 enum
 {
-  SWEEPS = 64
+  /* Gauss-Seidel sweeps, forward and back: a plateau of 20 cells across is smooth after them;
+     beyond, the middle is still split by the side that is nearer. */
+  SWEEPS = 64,
+  /* With more ties than one grid point in this many, the indicators say nothing: the lowest index
+     wins after all. */
+  SPARSE = 4,
+  NO_TIE = -1
 };
 
-/* A bonus is this part of a difference of indicators: the interface moves by less than 1/16 of a
-   cell at the plateau's rim. */
-static const double BONUS_PART = 0.0625;
+/* A bonus is this part of a difference of indicators: next to a tied point the interface moves by
+   less than this part of a cell. */
+static const double BONUS_PART = 0.0009765625;
+
+/* The six neighbours of a tied label: another tied one, or a value that stands fast. */
+typedef struct stencil
+{
+  int32_t tied[6];
+  double fixed; /* sum over the others, relative to the largest value at each */
+  int32_t count;
+} stencil;
 
 typedef struct builder
 {
   const mlim_samples* samples;
   const uint16_t* winners;
   mlim_plateau* out;
+  stencil* stencils;
   size_t capacity;
 } builder;
-
-static void corner_points(const mlim_grid* grid, size_t first, size_t out[8])
-{
-  const size_t nx = (size_t)grid->dims[0];
-  const size_t slice = nx * (size_t)grid->dims[1];
-  for (size_t c = 0; c < 8; ++c)
-  {
-    out[c] = first + (c & 1) + nx * (c >> 1 & 1) + slice * (c >> 2 & 1);
-  }
-}
 
 static double value_at(const mlim_samples* samples, int32_t label, size_t point)
 {
   double value;
   mlim_samples_row(samples, label, point, 1, &value);
   return value;
-}
-
-/* Whether two labels have the largest value at all corners. */
-static int is_plateau(const builder* b, const size_t corner[8])
-{
-  for (int c = 0; c < 8; ++c)
-  {
-    if (!(b->winners[corner[c]] & MLIM_TIED_FLAG))
-    {
-      return 0;
-    }
-  }
-  int shared = 0;
-  for (int32_t l = 0; l < b->samples->label_count && shared < 2; ++l)
-  {
-    int c = 0;
-    while (c < 8 && value_at(b->samples, l, corner[c]) ==
-                      value_at(b->samples, b->winners[corner[c]] & ~MLIM_TIED_FLAG, corner[c]))
-    {
-      ++c;
-    }
-    shared += c == 8;
-  }
-  return shared > 1;
 }
 
 static int add_point(builder* b, size_t point)
@@ -81,40 +60,6 @@ static int add_point(builder* b, size_t point)
     b->out->tied[b->out->count++] = (mlim_tied){ .point = point, .label = l };
   }
   return 0;
-}
-
-/* Marks the grid points of all plateau cells (one byte each). Returns whether there is one. */
-static int mark_points(const builder* b, unsigned char* is_marked)
-{
-  const mlim_grid* grid = b->samples->grid;
-  const size_t nx = (size_t)grid->dims[0];
-  const size_t ny = (size_t)grid->dims[1];
-  int has_one = 0;
-  for (size_t z = 0; z + 1 < (size_t)grid->dims[2]; ++z)
-  {
-    for (size_t y = 0; y + 1 < ny; ++y)
-    {
-      for (size_t x = 0; x + 1 < nx; ++x)
-      {
-        const size_t first = x + nx * (y + ny * z);
-        size_t corner[8];
-        if (!(b->winners[first] & MLIM_TIED_FLAG))
-        {
-          continue;
-        }
-        corner_points(grid, first, corner);
-        if (is_plateau(b, corner))
-        {
-          has_one = 1;
-          for (int c = 0; c < 8; ++c)
-          {
-            is_marked[corner[c]] = 1;
-          }
-        }
-      }
-    }
-  }
-  return has_one;
 }
 
 static const mlim_tied* find_tied(const mlim_plateau* plateau, size_t point, int32_t label)
@@ -139,46 +84,68 @@ static const mlim_tied* find_tied(const mlim_plateau* plateau, size_t point, int
   return is_found ? &plateau->tied[low] : NULL;
 }
 
-/* The mean of a label over the neighbours of a point, relative to the largest value there. */
-static double neighbor_mean(const builder* b, const mlim_tied* tied)
+static stencil look_round(const builder* b, const mlim_tied* tied)
 {
   const mlim_grid* grid = b->samples->grid;
-  size_t at[3];
   const size_t nx = (size_t)grid->dims[0];
-  const size_t steps[3] = { 1, nx, nx * (size_t)grid->dims[1] };
-  at[0] = tied->point % nx;
-  at[1] = tied->point / nx % (size_t)grid->dims[1];
-  at[2] = tied->point / steps[2];
-  double sum = 0;
-  int count = 0;
+  const size_t ny = (size_t)grid->dims[1];
+  const size_t steps[3] = { 1, nx, nx * ny };
+  const size_t at[3] = { tied->point % nx, tied->point / nx % ny, tied->point / steps[2] };
+  stencil out = { 0 };
   for (int side = 0; side < 6; ++side)
   {
     const int axis = side >> 1;
+    out.tied[side] = NO_TIE;
     if (side & 1 ? at[axis] + 1 >= (size_t)grid->dims[axis] : at[axis] == 0)
     {
       continue;
     }
     const size_t q = side & 1 ? tied->point + steps[axis] : tied->point - steps[axis];
     const mlim_tied* other = find_tied(b->out, q, tied->label);
-    sum += other != NULL ? other->bonus
-                         : value_at(b->samples, tied->label, q) -
-                             value_at(b->samples, b->winners[q] & ~MLIM_TIED_FLAG, q);
-    ++count;
+    ++out.count;
+    if (other != NULL)
+    {
+      out.tied[side] = (int32_t)(other - b->out->tied);
+      continue;
+    }
+    out.fixed += value_at(b->samples, tied->label, q) -
+                 value_at(b->samples, b->winners[q] & ~MLIM_TIED_FLAG, q);
   }
-  return sum / count;
+  return out;
 }
 
-static void smooth(const builder* b)
+static double mean_round(const mlim_plateau* plateau, const stencil* s)
+{
+  double sum = s->fixed;
+  for (int side = 0; side < 6; ++side)
+  {
+    sum += s->tied[side] != NO_TIE ? plateau->tied[s->tied[side]].bonus : 0;
+  }
+  return sum / s->count;
+}
+
+static mlim_status smooth(builder* b, mlim_context* context)
 {
   const size_t count = b->out->count;
+  b->stencils = mlim_allocate(count, sizeof *b->stencils);
+  if (b->stencils == NULL)
+  {
+    return mlim_fail_memory(context, "the ties of the indicators");
+  }
+  for (size_t k = 0; k < count; ++k)
+  {
+    b->stencils[k] = look_round(b, &b->out->tied[k]);
+  }
   for (int sweep = 0; sweep < SWEEPS; ++sweep)
   {
     for (size_t k = 0; k < count; ++k)
     {
-      mlim_tied* tied = &b->out->tied[sweep & 1 ? count - 1 - k : k];
-      tied->bonus = neighbor_mean(b, tied);
+      const size_t n = sweep & 1 ? count - 1 - k : k;
+      b->out->tied[n].bonus = mean_round(b->out, &b->stencils[n]);
     }
   }
+  mlim_release(b->stencils);
+  return MLIM_OK;
 }
 
 /* Shifts the bonuses of each point so that the best is 0, scales them, and names the winner. */
@@ -194,7 +161,7 @@ static void settle(mlim_plateau* plateau, uint16_t* winners)
       best = plateau->tied[end].bonus > plateau->tied[best].bonus ? end : best;
     }
     const double most = plateau->tied[best].bonus;
-    winners[plateau->tied[best].point] = (uint16_t)plateau->tied[best].label;
+    winners[plateau->tied[best].point] = (uint16_t)(plateau->tied[best].label | MLIM_TIED_FLAG);
     for (size_t k = first; k < end; ++k)
     {
       plateau->tied[k].bonus = BONUS_PART * (plateau->tied[k].bonus - most);
@@ -204,21 +171,27 @@ static void settle(mlim_plateau* plateau, uint16_t* winners)
 
 static mlim_status collect(builder* b, size_t points, mlim_context* context)
 {
-  unsigned char* is_marked = mlim_allocate_zeroed(points, 1);
-  if (is_marked == NULL)
+  size_t tied_points = 0;
+  for (size_t p = 0; p < points; ++p)
   {
-    return mlim_fail_memory(context, "the plateaus");
+    tied_points += (b->winners[p] & MLIM_TIED_FLAG) != 0;
   }
-  int has_failed = 0;
-  if (mark_points(b, is_marked))
+  if (tied_points > points / SPARSE)
   {
-    for (size_t p = 0; p < points && !has_failed; ++p)
+    return MLIM_OK;
+  }
+  for (size_t p = 0; p < points; ++p)
+  {
+    if ((b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p))
     {
-      has_failed = is_marked[p] && add_point(b, p);
+      return mlim_fail_memory(context, "the ties of the indicators");
     }
   }
-  mlim_release(is_marked);
-  return has_failed ? mlim_fail_memory(context, "the plateaus") : MLIM_OK;
+  return b->out->count < INT32_MAX ? MLIM_OK
+                                   : mlim_fail(context, MLIM_INVALID_ARGUMENT,
+                                       "There are %zu ties of indicators; at most %d can "
+                                       "be broken smoothly.",
+                                       b->out->count, INT32_MAX);
 }
 
 mlim_status mlim_plateau_find(
@@ -234,12 +207,8 @@ mlim_status mlim_plateau_find(
     status = collect(&b, points, context);
     if (status == MLIM_OK)
     {
-      smooth(&b);
+      status = smooth(&b, context);
     }
-  }
-  for (size_t p = 0; p < points; ++p)
-  {
-    winners[p] = (uint16_t)(winners[p] & ~MLIM_TIED_FLAG);
   }
   settle(out, winners);
   if (status != MLIM_OK)
@@ -255,18 +224,8 @@ void mlim_plateau_free(mlim_plateau* plateau)
   *plateau = (mlim_plateau){ 0 };
 }
 
-void mlim_plateau_correct(
-  const mlim_plateau* plateau, const mlim_grid* grid, int32_t label, size_t first, double out[8])
+double mlim_plateau_bonus(const mlim_plateau* plateau, size_t point, int32_t label)
 {
-  if (plateau->count == 0)
-  {
-    return;
-  }
-  size_t corner[8];
-  corner_points(grid, first, corner);
-  for (int c = 0; c < 8; ++c)
-  {
-    const mlim_tied* tied = find_tied(plateau, corner[c], label);
-    out[c] += tied != NULL ? tied->bonus : 0;
-  }
+  const mlim_tied* tied = find_tied(plateau, point, label);
+  return tied != NULL ? tied->bonus : 0;
 }

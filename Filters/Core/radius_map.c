@@ -27,6 +27,11 @@ static const double ABREAST = 0.8;
    reach too far. */
 static const double SAMPLE_SHARE = 0.125;
 
+/* Smallest radius, of smallest_distance. A wedge of 4 degrees between two curves needs radii of 0.033
+   times the distance from its junction, from about a spacing on: a larger floor gives such wedges
+   up, a smaller one lets curves that all but touch make hundreds of tiny balls. */
+static const double FLOOR_SHARE = 0.25;
+
 enum
 {
   MAX_GRADE_ROUNDS = 64 /* limits travel one curve a round, and end after a few lengths */
@@ -312,7 +317,7 @@ mlim_status mlim_radius_map_create(
   const double step = SAMPLE_SHARE * options->edge_size;
   mlim_radius_map map = { .curves = curves,
     .first_radius = options->ball_radius_scale * options->edge_size / 1.5,
-    .floor_radius = 0.5 * options->smallest_distance };
+    .floor_radius = FLOOR_SHARE * options->smallest_distance };
   piece_index index = { 0 };
   mlim_status status = allocate_samples(&map, step);
   if (!status && map.sample_count > 0)

@@ -178,8 +178,9 @@ static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_cont
   return status;
 }
 
-static mlim_status report(mlim_refinement* r, mlim_context* context)
+mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context)
 {
+  mlim_refinement* r = refinement;
   const double share = (double)r->complex.vertex_count / r->expected_vertices;
   const double fraction = 1 - exp(-1.5 * share);
   r->progress = fraction > r->progress ? fraction : r->progress;
@@ -208,7 +209,7 @@ static mlim_status work_batch(mlim_refinement* r, mlim_badness badness, mlim_con
     status = insert_crossing(r, entry.record, context);
     if (status == MLIM_OK && r->insertion_count % REPORT_EVERY == 0)
     {
-      status = report(r, context);
+      status = mlim_refine_report(r, context);
     }
   }
   return status;
@@ -259,7 +260,7 @@ static mlim_status check_disks(mlim_refinement* r, mlim_context* context)
     }
     if (status == MLIM_OK && k % 4096 == 4095)
     {
-      status = report(r, context);
+      status = mlim_refine_report(r, context);
     }
   }
   complex->dirty_count = 0;
@@ -295,7 +296,7 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
       break;
     }
   }
-  return status == MLIM_OK ? report(r, context) : status;
+  return status == MLIM_OK ? mlim_refine_report(r, context) : status;
 }
 
 /* ---- what is left ---- */

@@ -34,6 +34,9 @@ void mlim_refine_free(mlim_refinement* refinement);
    all is valid. */
 mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_context* context);
 
+/* Tells the host how far refinement is. */
+mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context);
+
 /* Balls (one byte each) that stand in the way of the topology: a foreign sheet touches them, or
    their star fails the disk condition. *count: how many. */
 mlim_status mlim_refine_find_balls(

@@ -30,8 +30,8 @@ static int cross_grid_edge(
   return mlim_oracle_crossings(&complex->oracle, start, end, 1, out) == 1;
 }
 
-static mlim_status insert_seed(mlim_complex* complex, const mlim_crossing* crossing,
-  double distance, mlim_context* context, size_t* count)
+mlim_status mlim_seeds_insert(mlim_complex* complex, const mlim_crossing* crossing, double distance,
+  mlim_context* context, size_t* count)
 {
   const int is_up = crossing->from < crossing->to;
   mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE,
@@ -72,7 +72,7 @@ mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_component
       mlim_crossing crossing;
       if (cross_grid_edge(complex, component->extremes[side], side, &crossing))
       {
-        status = insert_seed(complex, &crossing, distance, context, count);
+        status = mlim_seeds_insert(complex, &crossing, distance, context, count);
       }
     }
   }
@@ -134,7 +134,7 @@ static mlim_status seed_point(mlim_complex* complex, const int32_t point[3], dou
       continue;
     }
     const size_t before = *count;
-    const mlim_status status = insert_seed(complex, &crossing, distance, context, count);
+    const mlim_status status = mlim_seeds_insert(complex, &crossing, distance, context, count);
     if (status != MLIM_OK)
     {
       return status;

@@ -15,4 +15,8 @@ mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_component
 mlim_status mlim_seeds_on_sheets(
   mlim_complex* complex, double distance, mlim_context* context, size_t* count);
 
+/* One point on a crossing unless it is closer than `distance` to a vertex; ++*count if inserted. */
+mlim_status mlim_seeds_insert(mlim_complex* complex, const mlim_crossing* crossing, double distance,
+  mlim_context* context, size_t* count);
+
 #endif

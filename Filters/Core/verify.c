@@ -1,0 +1,240 @@
+#include "verify.h"
+
+#include "certificate.h"
+#include "crossings.h"
+#include "memory.h"
+#include "mesh.h"
+#include "nearest.h"
+#include "seeds.h"
+#include "status.h"
+#include "vector.h"
+#include "volumes.h"
+
+#include <math.h>
+
+/* A label needs this many voxels before its volume is looked at. */
+static const size_t MIN_VOLUME_VOXELS = 1000;
+
+/* Regions are brought to this part of the volume tolerance, so that rounding and what is left undone
+   do not bring them over it. */
+static const double VOLUME_TARGET = 0.75;
+
+/* The lost volume grows with the distance bound; one round lowers a bound at most to this part. */
+static const double MOST_TIGHTENING = 0.3;
+
+/* ---- far crossings ---- */
+
+typedef struct far_list
+{
+  mlim_crossing* crossings;
+  size_t count, capacity;
+  int has_failed;
+} far_list;
+
+typedef struct far_job
+{
+  const mlim_verification* verification;
+  const mlim_nearest* nearest;
+  mlim_oracle oracle;
+  double bound;
+  size_t min_voxels;
+  far_list* lists; /* one a slice */
+} far_job;
+
+typedef struct far_visit
+{
+  const far_job* job;
+  far_list* list;
+} far_visit;
+
+static int is_small(const far_job* job, const int32_t point[3])
+{
+  const int32_t* dims = mlim_field_grid_of(job->oracle.field)->dims;
+  const mlim_components* components = job->verification->components;
+  const size_t at =
+    (size_t)point[0] + (size_t)dims[0] * ((size_t)point[1] + (size_t)dims[1] * (size_t)point[2]);
+  return components->components[components->of_point[at]].voxel_count < job->min_voxels;
+}
+
+static void visit_crossing(
+  void* user, const int32_t low[3], const int32_t high[3], const mlim_crossing* crossing)
+{
+  const far_visit* visit = (const far_visit*)user;
+  const far_job* job = visit->job;
+  far_list* list = visit->list;
+  if (is_small(job, low) || is_small(job, high) ||
+      mlim_nearest_distance(job->nearest, crossing->point, job->bound, 2 * job->bound) <=
+        job->bound)
+  {
+    return;
+  }
+  if (mlim_reserve(&list->crossings, &list->capacity, list->count + 1, sizeof *list->crossings))
+  {
+    list->has_failed = 1;
+    return;
+  }
+  list->crossings[list->count++] = *crossing;
+}
+
+static void far_body(void* data, size_t begin, size_t end)
+{
+  const far_job* job = (const far_job*)data;
+  for (size_t z = begin; z < end; ++z)
+  {
+    far_visit visit = { .job = job, .list = &job->lists[z] };
+    mlim_crossings_of_slice(&job->oracle, (int32_t)z, visit_crossing, &visit);
+  }
+}
+
+static mlim_status insert_far(
+  const far_job* job, size_t slices, mlim_context* context, size_t* count)
+{
+  mlim_complex* complex = &job->verification->refinement->complex;
+  const mlim_options* options = job->verification->refinement->options;
+  /* The first rounds take few of the crossings that lie together; what they do not bring near is
+     left for the later ones, which look closer. */
+  const double distance = mlim_max(
+    options->smallest_distance, 0.5 * options->facet_size * pow(0.5, job->verification->round));
+  mlim_status status = MLIM_OK;
+  for (size_t z = 0; z < slices && status == MLIM_OK; ++z)
+  {
+    if (job->lists[z].has_failed)
+    {
+      return mlim_fail_memory(context, "the crossings far from the mesh");
+    }
+    for (size_t k = 0; k < job->lists[z].count && status == MLIM_OK; ++k)
+    {
+      status = mlim_seeds_insert(complex, &job->lists[z].crossings[k], distance, context, count);
+      if (status == MLIM_OK && k % 256 == 255)
+      {
+        status = mlim_refine_report(job->verification->refinement, context);
+      }
+    }
+  }
+  return status;
+}
+
+static mlim_status look_for_far(
+  const mlim_verification* v, const mlim_mesh* mesh, mlim_context* context, size_t* count)
+{
+  const mlim_complex* complex = &v->refinement->complex;
+  const mlim_options* options = v->refinement->options;
+  const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
+  const size_t slices = (size_t)grid->dims[2];
+  mlim_nearest nearest;
+  mlim_status status = mlim_nearest_create(
+    mesh, grid->size, mlim_max(options->facet_size, grid->unit), context, &nearest);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  far_job job = { .verification = v,
+    .nearest = &nearest,
+    .oracle = { .field = complex->oracle.field,
+      .tolerance = complex->oracle.tolerance,
+      .mode = MLIM_ORACLE_EXACT },
+    .bound = options->facet_distance,
+    .min_voxels = options->min_component_voxels,
+    .lists = mlim_allocate_zeroed(slices, sizeof *job.lists) };
+  if (job.lists == NULL)
+  {
+    status = mlim_fail_memory(context, "the crossings far from the mesh");
+  }
+  else
+  {
+    mlim_parallel_for(context, slices, far_body, &job);
+    status = insert_far(&job, slices, context, count);
+    for (size_t z = 0; z < slices; ++z)
+    {
+      mlim_release(job.lists[z].crossings);
+    }
+  }
+  mlim_release(job.lists);
+  mlim_nearest_free(&nearest);
+  return status;
+}
+
+/* ---- lost volume ---- */
+
+static mlim_status look_for_volume(const mlim_verification* v, mlim_context* context, size_t* count)
+{
+  mlim_complex* complex = &v->refinement->complex;
+  const mlim_options* options = v->refinement->options;
+  const size_t labels = (size_t)mlim_field_label_count(complex->oracle.field);
+  const double target = VOLUME_TARGET * options->volume_tolerance;
+  double* volumes = mlim_allocate(labels, sizeof *volumes);
+  if (volumes == NULL)
+  {
+    return mlim_fail_memory(context, "the volumes of the labels");
+  }
+  mlim_volumes_of_complex(complex, volumes);
+  for (size_t l = 0; l < labels; ++l)
+  {
+    if (v->voxels[l] < MIN_VOLUME_VOXELS ||
+        (int32_t)l == mlim_field_outside_label(complex->oracle.field))
+    {
+      continue;
+    }
+    const double lost = fabs(volumes[l] - v->volumes[l]) / v->volumes[l];
+    const double least = 0.25 * options->smallest_distance / options->facet_distance;
+    if (lost > target && complex->distance_shares[l] > least)
+    {
+      complex->distance_shares[l] *= mlim_max(MOST_TIGHTENING, 0.9 * target / lost);
+      ++*count;
+    }
+  }
+  mlim_release(volumes);
+  return MLIM_OK;
+}
+
+/* ---- lost components ---- */
+
+static mlim_status look_for_components(
+  const mlim_verification* v, mlim_context* context, size_t* count)
+{
+  mlim_complex* complex = &v->refinement->complex;
+  const size_t min_voxels = v->refinement->options->min_component_voxels;
+  unsigned char* is_wanted = mlim_allocate(v->components->count, 1);
+  if (is_wanted == NULL)
+  {
+    return mlim_fail_memory(context, "the components of the labels");
+  }
+  size_t lost;
+  size_t seeded = 0;
+  mlim_status status = MLIM_OK;
+  mlim_certificate_find_components(complex, v->components, min_voxels, is_wanted, &lost);
+  if (lost > 0)
+  {
+    for (size_t c = 0; c < v->components->count; ++c)
+    {
+      is_wanted[c] = !is_wanted[c];
+    }
+    status =
+      mlim_seeds_on_components(complex, v->components, is_wanted, min_voxels, context, &seeded);
+  }
+  *count += seeded;
+  mlim_release(is_wanted);
+  return status;
+}
+
+mlim_status mlim_verify_round(
+  const mlim_verification* verification, mlim_context* context, size_t* count)
+{
+  *count = 0;
+  mlim_mesh mesh = { 0 };
+  mlim_status status = look_for_components(verification, context, count);
+  if (status == MLIM_OK)
+  {
+    status = mlim_mesh_read(&verification->refinement->complex, context, &mesh);
+  }
+  if (status == MLIM_OK)
+  {
+    status = look_for_far(verification, &mesh, context, count);
+  }
+  mlim_mesh_free(&mesh);
+  if (status == MLIM_OK && verification->refinement->options->volume_tolerance > 0)
+  {
+    status = look_for_volume(verification, context, count);
+  }
+  return status;
+}

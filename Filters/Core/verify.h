@@ -1,0 +1,22 @@
+/* Looks from the image at a mesh that satisfies the facets' criteria, for what these cannot see:
+   components without a cell, grid crossings far from the mesh, regions that lost volume. Each finding
+   becomes a reason to go on refining. */
+#ifndef mlim_verify_h
+#define mlim_verify_h
+
+#include "components.h"
+#include "refine.h"
+
+typedef struct mlim_verification
+{
+  mlim_refinement* refinement;       /* borrowed */
+  const mlim_components* components; /* borrowed */
+  const double* volumes;             /* borrowed; of the field, a label */
+  const size_t* voxels;              /* borrowed; a label */
+} mlim_verification;
+
+/* Adds seeds and tightens bounds; *count: how many findings led to a change. */
+mlim_status mlim_verify_round(
+  const mlim_verification* verification, mlim_context* context, size_t* count);
+
+#endif

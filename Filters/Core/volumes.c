@@ -1,0 +1,127 @@
+#include "volumes.h"
+
+#include "memory.h"
+#include "status.h"
+#include "vector.h"
+
+#include <string.h>
+
+typedef struct volume_job
+{
+  const mlim_field* field;
+  size_t label_count;
+  double* volumes; /* label_count a slice of cells */
+} volume_job;
+
+static void add_cell(const mlim_field* field, const int32_t cell[3], double* volumes)
+{
+  const mlim_field_grid* grid = mlim_field_grid_of(field);
+  double middle[3];
+  int clearance;
+  double whole = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    middle[k] = (cell[k] + 0.5) * grid->spacing[k];
+    whole *= grid->spacing[k];
+  }
+  const int32_t label = mlim_field_label_near(field, middle, &clearance);
+  if (clearance > 0)
+  {
+    volumes[label] += whole;
+    return;
+  }
+  for (int c = 0; c < 8; ++c)
+  {
+    const double at[3] = { middle[0] + (c & 1 ? 0.25 : -0.25) * grid->spacing[0],
+      middle[1] + (c & 2 ? 0.25 : -0.25) * grid->spacing[1],
+      middle[2] + (c & 4 ? 0.25 : -0.25) * grid->spacing[2] };
+    volumes[mlim_field_label(field, at)] += whole / 8;
+  }
+}
+
+static void volume_body(void* data, size_t begin, size_t end)
+{
+  const volume_job* job = (const volume_job*)data;
+  const int32_t* cells = mlim_field_grid_of(job->field)->cells;
+  for (size_t z = begin; z < end; ++z)
+  {
+    int32_t cell[3] = { 0, 0, (int32_t)z };
+    for (cell[1] = 0; cell[1] < cells[1]; ++cell[1])
+    {
+      for (cell[0] = 0; cell[0] < cells[0]; ++cell[0])
+      {
+        add_cell(job->field, cell, job->volumes + z * job->label_count);
+      }
+    }
+  }
+}
+
+static void count_voxels(const mlim_field* field, size_t* voxels)
+{
+  const int32_t* dims = mlim_field_grid_of(field)->dims;
+  int32_t p[3];
+  for (p[2] = 0; p[2] < dims[2]; ++p[2])
+  {
+    for (p[1] = 0; p[1] < dims[1]; ++p[1])
+    {
+      for (p[0] = 0; p[0] < dims[0]; ++p[0])
+      {
+        ++voxels[mlim_field_point_label(field, p)];
+      }
+    }
+  }
+}
+
+mlim_status mlim_volumes_of_field(
+  const mlim_field* field, mlim_context* context, double* volumes, size_t* voxels)
+{
+  const size_t labels = (size_t)mlim_field_label_count(field);
+  const size_t slices = (size_t)mlim_field_grid_of(field)->cells[2];
+  memset(volumes, 0, labels * sizeof *volumes);
+  memset(voxels, 0, labels * sizeof *voxels);
+  /* A sum a slice, added up in order: the result must not depend on the threads. */
+  double* sums =
+    labels < SIZE_MAX / slices ? mlim_allocate_zeroed(labels * slices, sizeof *sums) : NULL;
+  if (sums == NULL)
+  {
+    return mlim_fail_memory(context, "the volumes of the labels");
+  }
+  mlim_parallel_for(context, slices, volume_body,
+    &(volume_job){ .field = field, .label_count = labels, .volumes = sums });
+  for (size_t z = 0; z < slices; ++z)
+  {
+    for (size_t l = 0; l < labels; ++l)
+    {
+      volumes[l] += sums[z * labels + l];
+    }
+  }
+  mlim_release(sums);
+  count_voxels(field, voxels);
+  return MLIM_OK;
+}
+
+void mlim_volumes_of_complex(const mlim_complex* complex, double* volumes)
+{
+  memset(volumes, 0, (size_t)mlim_field_label_count(complex->oracle.field) * sizeof *volumes);
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    const int32_t* id = complex->cells[c].vertices;
+    if (id[0] < 0)
+    {
+      continue;
+    }
+    int is_far = 0;
+    double edge[3][3];
+    for (int k = 0; k < 4; ++k)
+    {
+      is_far |= complex->vertices[id[k]].kind == MLIM_VERTEX_FAR;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      mlim_subtract(complex->vertices[id[k + 1]].point, complex->vertices[id[0]].point, edge[k]);
+    }
+    double normal[3];
+    mlim_cross(edge[0], edge[1], normal);
+    volumes[complex->cells[c].label] += is_far ? 0 : mlim_dot(normal, edge[2]) / 6;
+  }
+}

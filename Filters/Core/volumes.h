@@ -1,0 +1,15 @@
+/* Volumes of the labels: of the interpolated indicators, and of the complex. */
+#ifndef mlim_volumes_h
+#define mlim_volumes_h
+
+#include "complex.h"
+
+/* Per label (label_count numbers; voxels: grid points): the part of the box where it wins, from the
+   middles of the eighths of each mixed cell. The outside's counts what is in the box. */
+mlim_status mlim_volumes_of_field(
+  const mlim_field* field, mlim_context* context, double* volumes, size_t* voxels);
+
+/* Per label: the cells that have it. Those with a far vertex do not count. */
+void mlim_volumes_of_complex(const mlim_complex* complex, double* volumes);
+
+#endif

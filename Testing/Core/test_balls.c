@@ -1,0 +1,179 @@
+/* The balls' conditions hold on networks of every kind. */
+#include "scenes.h"
+
+static double three_sectors(const double at[3], int label)
+{
+  const double angle = 0.4 + label * 2.0943951023931953;
+  return cos(angle) * (at[0] - 4.3) + sin(angle) * (at[1] - 4.6);
+}
+
+static double checkerboard(const double at[3], int label)
+{
+  return (label & 1 ? 1 : -1) * (at[0] - 3) + (label & 2 ? 1 : -1) * (at[1] - 3) +
+         (label & 4 ? 1 : -1) * (at[2] - 3);
+}
+
+static double two_spheres(const double at[3], int label)
+{
+  const double x = at[0] - (label == 1 ? 7.3 : 13.3);
+  return label == 0 ? 0 : 5 - sqrt(x * x + pow(at[1] - 9.1, 2) + pow(at[2] - 8.8, 2));
+}
+
+static double foam(const double at[3], int label)
+{
+  const double x = at[0] - fmod(1.3 + 7.7 * label, 11);
+  const double y = at[1] - fmod(2.9 + 4.9 * label, 11);
+  const double z = at[2] - fmod(4.1 + 6.1 * label, 11);
+  return -sqrt(x * x + y * y + z * z);
+}
+
+static double one_region(const double at[3], int label)
+{
+  (void)at;
+  return label;
+}
+
+/* A wedge of label 1 in label 0, its edge at x = 2.3; 8 and 4 degrees. */
+static double wedge(const double at[3], double degrees, int label)
+{
+  const double slope = tan(0.5 * degrees * 3.141592653589793 / 180);
+  return label == 0 ? 0 : slope * (at[0] - 2.3) - fabs(at[1] - 4.4);
+}
+
+static double wedge_8(const double at[3], int label)
+{
+  return wedge(at, 8, label);
+}
+
+static double sectors_of_wedge(const double at[3], double degrees, int label)
+{
+  /* Exact planes: label 1 below, 2 above, 0 the wedge between them. */
+  const double slope = tan(0.5 * degrees * 3.141592653589793 / 180);
+  const double x = at[0] - 2.3;
+  const double y = at[1] - 4.4;
+  return label == 0 ? 2 * slope * x : label == 1 ? -y * 2 : y * 2;
+}
+
+static double sectors_8(const double at[3], int label)
+{
+  return sectors_of_wedge(at, 8, label);
+}
+
+static double sectors_4(const double at[3], int label)
+{
+  return sectors_of_wedge(at, 4, label);
+}
+
+static size_t fault_count(const mlim_ball_counts* counts)
+{
+  return counts->apart_count + counts->holding_count + counts->touching_count + counts->long_count +
+         counts->stray_count + counts->short_count;
+}
+
+static void check_scene(const char* name, const scene_spec* scene, double scale, int is_empty)
+{
+  mlim_field* field = scene_field(scene);
+  mlim_options options = { 0 };
+  options = mlim_options_default(field);
+  options.facet_size *= scale;
+  options.edge_size *= scale;
+  options.facet_distance *= scale;
+  mlim_curves curves;
+  mlim_balls balls;
+  mlim_ball_counts counts;
+  CHECK(mlim_curves_extract(field, &options, NULL, &curves) == MLIM_OK);
+  CHECK(mlim_balls_cover(&curves, &options, NULL, &balls) == MLIM_OK);
+  CHECK(mlim_balls_check(&curves, &balls, &options, &counts) == MLIM_OK);
+  CHECK(is_empty == (balls.ball_count == 0));
+  if (fault_count(&counts) > 0)
+  {
+    fprintf(stderr,
+      "%s at %g, %zu balls: %zu apart %zu hold %zu touch %zu long %zu stray %zu short\n", name,
+      scale, balls.ball_count, counts.apart_count, counts.holding_count, counts.touching_count,
+      counts.long_count, counts.stray_count, counts.short_count);
+  }
+  CHECK_COUNT(fault_count(&counts), 0);
+
+  /* Splitting every third ball keeps the conditions, and the junctions. */
+  unsigned char* is_marked = mlim_allocate_zeroed(balls.ball_count, 1);
+  for (size_t b = 0; b < balls.ball_count; b += 3)
+  {
+    is_marked[b] = 1;
+  }
+  const mlim_ball_split split = { .is_marked = is_marked };
+  mlim_balls halves;
+  CHECK(mlim_balls_split(&balls, &options, &split, NULL, &halves) == MLIM_OK);
+  CHECK(mlim_balls_check(NULL, &halves, &options, &counts) == MLIM_OK);
+  if (fault_count(&counts) > 0)
+  {
+    fprintf(stderr, "%s split, %zu balls: %zu apart %zu hold %zu touch %zu long\n", name,
+      halves.ball_count, counts.apart_count, counts.holding_count, counts.touching_count,
+      counts.long_count);
+  }
+  CHECK_COUNT(fault_count(&counts), 0);
+  /* Crowded balls may overlap enough even when halved. */
+  CHECK(halves.ball_count >= balls.ball_count);
+  for (size_t b = 0; b < balls.ball_count && balls.ball_curves[b] < 0; ++b)
+  {
+    CHECK(!memcmp(balls.centers + 3 * b, halves.centers + 3 * b, 3 * sizeof(double)));
+  }
+  mlim_release(is_marked);
+  mlim_balls_free(&halves);
+  mlim_balls_free(&balls);
+  mlim_curves_free(&curves);
+  mlim_field_free(field);
+}
+
+int main(void)
+{
+  const double scales[3] = { 1, 0.4, 3 };
+  for (int s = 0; s < 3; ++s)
+  {
+    const scene_spec sectors = { .dims = { 9, 10, 6 },
+      .spacing = { 1, 1, 1 },
+      .label_count = 3,
+      .background = 0,
+      .function = three_sectors };
+    check_scene("sectors", &sectors, scales[s], 0);
+    const scene_spec board = { .dims = { 7, 7, 7 },
+      .spacing = { 1, 1, 1 },
+      .label_count = 8,
+      .background = -1,
+      .function = checkerboard };
+    check_scene("checkerboard", &board, scales[s], 0);
+    const scene_spec spheres = { .dims = { 22, 19, 19 },
+      .spacing = { 1, 1, 1 },
+      .label_count = 3,
+      .background = 0,
+      .function = two_spheres };
+    check_scene("spheres", &spheres, scales[s], 0);
+    const scene_spec cells = { .dims = { 12, 12, 12 },
+      .spacing = { 1, 1, 1 },
+      .label_count = 9,
+      .background = -1,
+      .function = foam };
+    check_scene("foam", &cells, scales[s], 0);
+    const scene_spec box = { .dims = { 5, 4, 3 },
+      .spacing = { 1, 2, 0.5 },
+      .label_count = 2,
+      .background = 0,
+      .function = one_region };
+    check_scene("box", &box, scales[s], 0);
+    const scene_function wedges[3] = { wedge_8, sectors_8, sectors_4 };
+    const char* names[3] = { "wedge of 8", "sectors of 8", "sectors of 4" };
+    for (int w = 0; w < 3; ++w)
+    {
+      const scene_spec sharp = { .dims = { 20, 10, 6 },
+        .spacing = { 1, 1, 1 },
+        .label_count = w == 0 ? 2 : 3,
+        .background = w == 0 ? 0 : -1,
+        .function = wedges[w] };
+      /* Small balls at a sharp angle would fall below the floor. */
+      if (w < 2 || scales[s] >= 1)
+      {
+        check_scene(names[w], &sharp, scales[s], 0);
+      }
+    }
+  }
+  return check_result();
+}

@@ -1,0 +1,54 @@
+// operator new as the tests of failing allocations need it: with a say for test_memory.c.
+#include <cstdlib>
+#include <new>
+
+extern "C"
+{
+  int test_memory_fails(void);
+  void* __real_malloc(std::size_t size);
+}
+
+void* operator new(std::size_t size)
+{
+  void* memory = test_memory_fails() ? nullptr : __real_malloc(size > 0 ? size : 1);
+  if (memory == nullptr)
+  {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept
+{
+  return test_memory_fails() ? nullptr : __real_malloc(size > 0 ? size : 1);
+}
+
+void* operator new[](std::size_t size)
+{
+  return operator new(size);
+}
+
+void operator delete(void* memory) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void* memory, std::size_t) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void* memory, const std::nothrow_t&) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete[](void* memory) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete[](void* memory, std::size_t) noexcept
+{
+  std::free(memory);
+}

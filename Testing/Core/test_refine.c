@@ -1,0 +1,175 @@
+/* Refinement as a fixed point, its bounds one by one, and its vertex limit. */
+#include "audit.h"
+#include "refine.h"
+#include "seeds.h"
+#include "shapes.h"
+
+static mlim_status run_shape(int kind, const mlim_options* options, run* out)
+{
+  const shape s = shape_of(kind);
+  image* im = shape_sample(&s);
+  mlim_context context = { 0 };
+  const mlim_status status = run_grid(&im->grid, options, &context, out);
+  image_free(im);
+  return status;
+}
+
+/* ---- fixed point ---- */
+
+/* Refining what is finished inserts nothing. */
+static void test_fixed_point(int kind)
+{
+  const mlim_options options = run_options(1);
+  run r;
+  CHECK(run_shape(kind, &options, &r) == MLIM_OK);
+  const mlim_oracle oracle = {
+    .field = r.field, .tolerance = r.options.crossing_tolerance, .mode = r.options.oracle_mode
+  };
+  mlim_refinement refinement;
+  mlim_components components;
+  size_t count;
+  CHECK(mlim_components_find(r.field, NULL, &components) == MLIM_OK);
+  CHECK(mlim_refine_start(&refinement, &oracle, &r.balls, &r.options, NULL) == MLIM_OK);
+  CHECK(
+    mlim_seeds_on_components(&refinement.complex, &components, NULL, 1, NULL, &count) == MLIM_OK);
+  CHECK(mlim_refine_run(&refinement, MLIM_GOAL_TOPOLOGY, NULL) == MLIM_OK);
+  const size_t coarse = refinement.complex.vertex_count;
+  CHECK(mlim_refine_run(&refinement, MLIM_GOAL_TOPOLOGY, NULL) == MLIM_OK);
+  CHECK_COUNT(refinement.complex.vertex_count, coarse);
+  CHECK(mlim_refine_run(&refinement, MLIM_GOAL_QUALITY, NULL) == MLIM_OK);
+  const size_t fine = refinement.complex.vertex_count;
+  CHECK(fine > coarse);
+  CHECK(mlim_refine_run(&refinement, MLIM_GOAL_QUALITY, NULL) == MLIM_OK);
+  CHECK(mlim_refine_run(&refinement, MLIM_GOAL_TOPOLOGY, NULL) == MLIM_OK);
+  CHECK_COUNT(refinement.complex.vertex_count, fine);
+  CHECK(mlim_refine_count_disks(&refinement, NULL, &count) == MLIM_OK);
+  CHECK_COUNT(count, 0);
+  mlim_refine_free(&refinement);
+  mlim_components_free(&components);
+  run_free(&r);
+}
+
+/* ---- bounds ---- */
+
+typedef struct measures
+{
+  double circumradius; /* largest, of triangles without a ball vertex */
+  double ratio;
+  size_t vertex_count;
+} measures;
+
+static measures measure(const run* r)
+{
+  measures m = { .vertex_count = r->mesh.vertex_count };
+  for (size_t t = 0; t < r->mesh.triangle_count; ++t)
+  {
+    const int32_t* v = r->mesh.triangles + 3 * t;
+    double shortest = INFINITY;
+    for (int k = 0; k < 3; ++k)
+    {
+      shortest = fmin(
+        shortest, audit_length(audit_point(&r->mesh, v[k]), audit_point(&r->mesh, v[(k + 1) % 3])));
+    }
+    const double ratio = audit_ratio(&r->mesh, t);
+    if (!audit_has_ball(&r->mesh, t))
+    {
+      m.circumradius = fmax(m.circumradius, ratio * shortest);
+      m.ratio = fmax(m.ratio, ratio);
+    }
+  }
+  return m;
+}
+
+/* Each tighter bound is met, and costs vertices. */
+static void test_bounds(int kind)
+{
+  const struct
+  {
+    size_t option;
+    double bounds[4];
+  } rows[] = {
+    { offsetof(mlim_options, facet_size), { 4, 2, 1, 0.5 } },
+    { offsetof(mlim_options, facet_distance), { 0.4, 0.1, 0.025, 0.006 } },
+    { offsetof(mlim_options, facet_radius_edge_ratio), { 3, 2, 1.4, 1 } },
+  };
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
+  {
+    measures last = { .circumradius = INFINITY, .ratio = INFINITY };
+    for (int b = 0; b < 4; ++b)
+    {
+      mlim_options options = run_options(4);
+      options.facet_distance = 1;
+      options.facet_radius_edge_ratio = 3;
+      *(double*)((char*)&options + rows[k].option) = rows[k].bounds[b];
+      options.edge_size = fmin(1, options.facet_size); /* balls must not be in the way */
+      run r;
+      CHECK(run_shape(kind, &options, &r) == MLIM_OK);
+      audit_mesh(r.field, &r.balls, &r.options, &r.mesh);
+      const measures m = measure(&r);
+      CHECK(m.vertex_count >= last.vertex_count);
+      CHECK(rows[k].option != offsetof(mlim_options, facet_size) ||
+            m.circumradius <= r.options.facet_size * (1 + 1e-9));
+      CHECK(rows[k].option != offsetof(mlim_options, facet_radius_edge_ratio) ||
+            m.ratio <= r.options.facet_radius_edge_ratio + 1e-9);
+      CHECK_COUNT(r.mesh.report.unresolved_size_count, 0);
+      CHECK_BELOW(fabs(m.ratio - r.mesh.report.max_radius_edge_ratio), 1e-9);
+      last = m;
+      run_free(&r);
+    }
+  }
+}
+
+/* Finer facets bring the volume closer to the truth. */
+static void test_volume_converges(void)
+{
+  const double sizes[] = { 4, 2, 1, 0.5 };
+  const shape s = shape_of(SHAPE_SPHERE);
+  double last = INFINITY;
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k)
+  {
+    const mlim_options options = run_options(sizes[k]);
+    run r;
+    CHECK(run_shape(SHAPE_SPHERE, &options, &r) == MLIM_OK);
+    const double error = fabs(r.mesh.volumes[1] / s.volume[1] - 1);
+    CHECK(error < last);
+    last = error;
+    run_free(&r);
+  }
+}
+
+/* ---- vertex limit ---- */
+
+/* Whatever the limit, what comes back is a labelled partition. */
+static void test_vertex_limit(int kind)
+{
+  const mlim_options free_options = run_options(1);
+  run whole;
+  CHECK(run_shape(kind, &free_options, &whole) == MLIM_OK);
+  for (size_t limit = whole.balls.ball_count + 60; limit < whole.mesh.vertex_count; limit *= 2)
+  {
+    mlim_options options = run_options(1);
+    options.vertex_limit = limit;
+    run r;
+    const mlim_status status = run_shape(kind, &options, &r);
+    CHECK(status == MLIM_VERTEX_LIMIT);
+    CHECK(r.mesh.triangle_count > 0);
+    CHECK_BELOW((double)r.mesh.vertex_count, (double)limit);
+    audit_partition(r.field, &r.mesh);
+    run_free(&r);
+  }
+  run_free(&whole);
+}
+
+int main(void)
+{
+  const int kinds[] = { SHAPE_SPHERE, SHAPE_TWO_SPHERES, SHAPE_CUT_SPHERE, SHAPE_OCTANTS };
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
+  {
+    test_fixed_point(kinds[k]);
+    test_vertex_limit(kinds[k]);
+  }
+  test_bounds(SHAPE_SPHERE);
+  test_bounds(SHAPE_TWO_SPHERES);
+  test_volume_converges();
+  return check_result();
+}
