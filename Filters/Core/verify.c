@@ -22,12 +22,22 @@ static const double VOLUME_TARGET = 0.75;
 /* The lost volume grows with the distance bound; one round lowers a bound at most to this part. */
 static const double MOST_TIGHTENING = 0.3;
 
+/* Share of the grid crossings that may stay far from the mesh: single voxels' noise. Each of them
+   would cost about 6 vertices. */
+static const double FAR_SHARE = 0.005;
+
+enum
+{
+  FAR_ROUNDS = 3 /* the later ones find nearly nothing, and a look costs as much as the first */
+};
+
 /* ---- far crossings ---- */
 
 typedef struct far_list
 {
   mlim_crossing* crossings;
   size_t count, capacity;
+  size_t seen_count; /* crossings looked at */
   int has_failed;
 } far_list;
 
@@ -62,9 +72,13 @@ static void visit_crossing(
   const far_visit* visit = (const far_visit*)user;
   const far_job* job = visit->job;
   far_list* list = visit->list;
-  if (is_small(job, low) || is_small(job, high) ||
-      mlim_nearest_distance(job->nearest, crossing->point, job->bound, 2 * job->bound) <=
-        job->bound)
+  if (is_small(job, low) || is_small(job, high))
+  {
+    return;
+  }
+  ++list->seen_count;
+  if (mlim_nearest_distance(job->nearest, crossing->point, job->bound, 2 * job->bound) <=
+      job->bound)
   {
     return;
   }
@@ -114,6 +128,18 @@ static mlim_status insert_far(
   return status;
 }
 
+static int has_many_far(const far_job* job, size_t slices)
+{
+  double far = 0;
+  double seen = 0;
+  for (size_t z = 0; z < slices; ++z)
+  {
+    far += (double)job->lists[z].count;
+    seen += (double)job->lists[z].seen_count;
+  }
+  return far > FAR_SHARE * seen;
+}
+
 static mlim_status look_for_far(
   const mlim_verification* v, const mlim_mesh* mesh, mlim_context* context, size_t* count)
 {
@@ -143,7 +169,10 @@ static mlim_status look_for_far(
   else
   {
     mlim_parallel_for(context, slices, far_body, &job);
-    status = insert_far(&job, slices, context, count);
+    if (has_many_far(&job, slices))
+    {
+      status = insert_far(&job, slices, context, count);
+    }
     for (size_t z = 0; z < slices; ++z)
     {
       mlim_release(job.lists[z].crossings);
@@ -223,15 +252,15 @@ mlim_status mlim_verify_round(
   *count = 0;
   mlim_mesh mesh = { 0 };
   mlim_status status = look_for_components(verification, context, count);
-  if (status == MLIM_OK)
+  if (status == MLIM_OK && verification->round < FAR_ROUNDS)
   {
     status = mlim_mesh_read(&verification->refinement->complex, context, &mesh);
+    if (status == MLIM_OK)
+    {
+      status = look_for_far(verification, &mesh, context, count);
+    }
+    mlim_mesh_free(&mesh);
   }
-  if (status == MLIM_OK)
-  {
-    status = look_for_far(verification, &mesh, context, count);
-  }
-  mlim_mesh_free(&mesh);
   if (status == MLIM_OK && verification->refinement->options->volume_tolerance > 0)
   {
     status = look_for_volume(verification, context, count);

@@ -13,6 +13,7 @@ typedef struct mlim_verification
   const mlim_components* components; /* borrowed */
   const double* volumes;             /* borrowed; of the field, a label */
   const size_t* voxels;              /* borrowed; a label */
+  int round;                         /* from 0 on */
 } mlim_verification;
 
 /* Adds seeds and tightens bounds; *count: how many findings led to a change. */
