@@ -1,4 +1,5 @@
 /* From balls to the mesh: the order of the stages of refinement. */
+#include "balls_prune.h"
 #include "certificate.h"
 #include "memory.h"
 #include "mesh.h"
@@ -22,6 +23,9 @@ typedef struct build
   double* volumes; /* of the field, a label */
   size_t* voxels;
   mlim_refinement refinement;
+  mlim_balls balls; /* own: after pruning and splitting */
+  const mlim_balls* used_balls;
+  size_t hidden_ball_count;
 } build;
 
 static mlim_status check_balls(const mlim_balls* balls, mlim_context* context)
@@ -54,6 +58,58 @@ static mlim_status seed(build* b)
            : mlim_seeds_on_sheets(complex, 2 * b->options->facet_size, b->context, &count);
 }
 
+/* Replaces the balls by others made from them. */
+static void take_balls(build* b, mlim_balls* balls)
+{
+  mlim_refine_free(&b->refinement);
+  mlim_balls_free(&b->balls);
+  b->balls = *balls;
+  b->used_balls = &b->balls;
+}
+
+/* Starts with all balls that do not hide each other. */
+static mlim_status start(build* b)
+{
+  enum
+  {
+    MAX_TRIES = 16 /* each takes balls out, nearly always all of them at the first */
+  };
+  mlim_status status = MLIM_OK;
+  for (int try = 0; try < MAX_TRIES && status == MLIM_OK; ++try)
+  {
+    unsigned char* is_hidden = mlim_allocate(b->used_balls->ball_count, 1);
+    size_t count = 0;
+    status = is_hidden == NULL ? mlim_fail_memory(b->context, "the protecting balls")
+                               : mlim_refine_start(&b->refinement, &b->oracle, b->used_balls,
+                                   b->options, b->context, is_hidden, &count);
+    mlim_balls pruned = { 0 };
+    if (status == MLIM_OK && count > 0)
+    {
+      status = mlim_balls_prune(b->used_balls, is_hidden, b->context, &pruned);
+    }
+    mlim_release(is_hidden);
+    if (status != MLIM_OK || count == 0)
+    {
+      return status;
+    }
+    b->hidden_ball_count += count;
+    take_balls(b, &pruned);
+  }
+  return mlim_fail(b->context, MLIM_INVALID_ARGUMENT,
+    "The protecting balls hide each other; no ball may hold the centre of another one.");
+}
+
+static mlim_status refine_topology(build* b)
+{
+  mlim_status status = start(b);
+  if (status == MLIM_OK)
+  {
+    status = seed(b);
+  }
+  return status == MLIM_OK ? mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context)
+                           : status;
+}
+
 static mlim_status refine_all(build* b)
 {
   enum
@@ -61,11 +117,7 @@ static mlim_status refine_all(build* b)
     /* Most meshes are done after two or three; each later one changes less. */
     MAX_ROUNDS = 8
   };
-  mlim_status status = seed(b);
-  if (status == MLIM_OK)
-  {
-    status = mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context);
-  }
+  mlim_status status = refine_topology(b);
   mlim_verification verification = { .refinement = &b->refinement,
     .components = &b->components,
     .volumes = b->volumes,
@@ -151,6 +203,7 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
     out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &edges);
     out->report.insertion_count = b->refinement.insertion_count;
     out->report.relabeled_cell_count = relabeled;
+    out->report.hidden_ball_count = b->hidden_ball_count;
     count_unresolved(b, &out->report);
     status =
       mlim_refine_count_disks(&b->refinement, b->context, &out->certificate.disk_failure_count);
@@ -198,6 +251,7 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
     return status;
   }
   build b = { .field = field,
+    .used_balls = balls,
     .options = &complete,
     .context = context,
     .oracle = {
@@ -211,10 +265,6 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
   {
     status = measure_field(&b);
   }
-  if (status == MLIM_OK)
-  {
-    status = mlim_refine_start(&b.refinement, &b.oracle, balls, &complete, context);
-  }
   mlim_status outcome = status;
   if (status == MLIM_OK)
   {
@@ -226,6 +276,7 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
     outcome = status == MLIM_OK ? outcome : status;
   }
   mlim_refine_free(&b.refinement);
+  mlim_balls_free(&b.balls);
   mlim_components_free(&b.components);
   mlim_release(b.volumes);
   mlim_release(b.voxels);

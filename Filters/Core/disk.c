@@ -61,14 +61,6 @@ static int push(int32_t** array, size_t* count, size_t* capacity, int32_t value)
   return 0;
 }
 
-/* A facet between two labels; records of equal labels are no part of the complex. */
-static int is_restricted(const mlim_complex* complex, const mlim_cell* cell, int index)
-{
-  const int32_t other = cell->neighbors[index];
-  return cell->facets[index] != 0 && other != MLIM_NO_CELL &&
-         complex->cells[other].label != cell->label;
-}
-
 static int visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_star* star)
 {
   int failed = 0;

@@ -135,6 +135,86 @@ static int is_candidate(const rivals* rival, int32_t label, const double value[8
   return 1;
 }
 
+/* The labels that the 27 neighbours of a grid point have. */
+typedef struct sight
+{
+  int32_t count;
+  int32_t labels[27];
+} sight;
+
+static void look_round(const mlim_field* field, const int32_t point[3], sight* out)
+{
+  out->count = 0;
+  for (int n = 0; n < 27; ++n)
+  {
+    const int32_t p[3] = { point[0] + n % 3 - 1, point[1] + n / 3 % 3 - 1, point[2] + n / 9 - 1 };
+    if (p[0] < 0 || p[1] < 0 || p[2] < 0 || p[0] >= field->grid.dims[0] ||
+        p[1] >= field->grid.dims[1] || p[2] >= field->grid.dims[2])
+    {
+      continue;
+    }
+    const int32_t label = mlim_field_point_label(field, p) & ~MLIM_TIED_FLAG;
+    int32_t k = 0;
+    while (k < out->count && out->labels[k] != label)
+    {
+      ++k;
+    }
+    out->labels[k] = label;
+    out->count += k == out->count;
+  }
+}
+
+static double value_at(const build_job* job, int32_t label, size_t point)
+{
+  double value;
+  mlim_samples_row(job->samples, label, point, 1, &value);
+  const int is_tied = (job->field->winners[point] & MLIM_TIED_FLAG) != 0;
+  return value + (is_tied ? mlim_plateau_bonus(&job->plateau, point, label) : 0);
+}
+
+/* Where a label is not seen it is at most second among those that are. The corrected value depends
+   on the grid point alone, so all cells that share it agree. */
+static void lower_unseen(
+  const build_job* job, int32_t label, size_t first, const size_t corner[8], double value[8])
+{
+  const int32_t* dims = job->field->grid.dims;
+  for (int c = 0; c < 8; ++c)
+  {
+    const size_t point = first + corner[c];
+    const int32_t at[3] = { (int32_t)(point % (size_t)dims[0]),
+      (int32_t)(point / (size_t)dims[0] % (size_t)dims[1]),
+      (int32_t)(point / ((size_t)dims[0] * (size_t)dims[1])) };
+    sight seen;
+    look_round(job->field, at, &seen);
+    double best = -INFINITY;
+    double second = -INFINITY;
+    int is_seen = 0;
+    for (int32_t k = 0; k < seen.count && !is_seen; ++k)
+    {
+      is_seen = seen.labels[k] == label;
+      const double v = value_at(job, seen.labels[k], point);
+      second = v > best ? best : v > second ? v : second;
+      best = v > best ? v : best;
+    }
+    if (!is_seen && second < value[c] && seen.count > 1)
+    {
+      value[c] = second;
+    }
+  }
+}
+
+static int is_rival(const rivals* rival, int32_t label)
+{
+  for (int32_t r = 0; r < rival->count; ++r)
+  {
+    if (rival->labels[r] == label)
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
 static uint32_t float_word(double value)
 {
   const float f = (float)value;
@@ -173,6 +253,14 @@ static uint32_t add_mixed(
     if (!is_candidate(&rival, l, value))
     {
       continue;
+    }
+    if (samples->grid->unseen == MLIM_UNSEEN_DROP && !is_rival(&rival, l))
+    {
+      lower_unseen(job, l, first, corner, value);
+      if (!is_candidate(&rival, l, value))
+      {
+        continue;
+      }
     }
     names[count] = (uint32_t)l;
     for (int c = 0; c < 8; ++c)

@@ -102,6 +102,14 @@ extern "C"
     MLIM_TIE_LOWEST_INDEX /* the lowest index wins */
   } mlim_tie_breaking;
 
+/* What happens to a label between grid points none of which has it: films, wedges and specks thinner
+   than the grid can see. A grid point sees a label if one of its 27 neighbours has it. */
+typedef enum mlim_unseen
+{
+  MLIM_UNSEEN_DROP, /* where it is not seen a label is at most second: the film ends there */
+  MLIM_UNSEEN_KEEP  /* the interpolants decide everywhere */
+} mlim_unseen;
+
   typedef struct mlim_grid
   {
     int32_t dims[3];                 /* points along each axis; at least 2 */
@@ -113,6 +121,7 @@ extern "C"
     size_t background_array; /* with MLIM_BACKGROUND_ARRAY */
     double background_value; /* with MLIM_BACKGROUND_CONSTANT; finite */
     mlim_tie_breaking tie_breaking;
+  mlim_unseen unseen;
   } mlim_grid;
 
   /* The index over the grid. Holds no pointer into the grid's arrays once it is made. */
@@ -251,7 +260,7 @@ extern "C"
     size_t unresolved_distance_count;
     size_t unresolved_ratio_count;      /* without a ball vertex */
     size_t unresolved_ball_ratio_count; /* with a ball vertex: quality gives way near balls */
-    size_t split_ball_count;
+    size_t hidden_ball_count;    /* balls left out because another one covers them */
     size_t relabeled_cell_count;       /* to mend topology below the smallest distance */
     double max_radius_edge_ratio;      /* triangles without a ball vertex */
     double mean_radius_edge_ratio;     /* all triangles */

@@ -33,7 +33,8 @@ static int compare_balls(const void* a, const void* b)
 }
 
 /* Along the Morton curve, so that each ball is located from the one before in a few steps. */
-static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mlim_context* context)
+static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mlim_context* context,
+  unsigned char* is_hidden, size_t* hidden_count)
 {
   ordered_ball* order = mlim_allocate(balls->ball_count, sizeof *order);
   if (order == NULL)
@@ -59,13 +60,10 @@ static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mli
       mlim_complex_probe(&r->complex, &vertex, MLIM_NO_CELL, MLIM_START_NEAR, context, &power);
     if (status == MLIM_OK && power < 0)
     {
-      const double* c = vertex.point;
-      status = mlim_fail(context, MLIM_INVALID_ARGUMENT,
-        "Protecting ball %d at (%g, %g, %g) of radius %g holds the centre of another one or lies "
-        "inside others; no ball may hold the centre of another.",
-        (int)b, c[0], c[1], c[2], balls->radii[b]);
+      is_hidden[b] = 1;
+      ++*hidden_count;
     }
-    if (status == MLIM_OK)
+    else if (status == MLIM_OK)
     {
       status = mlim_complex_commit(&r->complex, context);
     }
@@ -75,7 +73,8 @@ static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mli
 }
 
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
-  const mlim_balls* balls, const mlim_options* options, mlim_context* context)
+  const mlim_balls* balls, const mlim_options* options, mlim_context* context,
+  unsigned char* is_hidden, size_t* hidden_count)
 {
   mlim_refinement* r = refinement;
   *r = (mlim_refinement){ .options = options };
@@ -87,9 +86,11 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   }
   if (status == MLIM_OK)
   {
-    status = insert_balls(r, balls, context);
+    memset(is_hidden, 0, balls->ball_count);
+    *hidden_count = 0;
+    status = insert_balls(r, balls, context, is_hidden, hidden_count);
   }
-  if (status == MLIM_OK)
+  if (status == MLIM_OK && *hidden_count == 0)
   {
     status = mlim_complex_record_all(&r->complex, context);
   }
@@ -300,32 +301,6 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
 }
 
 /* ---- what is left ---- */
-
-mlim_status mlim_refine_find_balls(
-  mlim_refinement* refinement, unsigned char* is_marked, mlim_context* context, size_t* count)
-{
-  mlim_complex* complex = &refinement->complex;
-  *count = 0;
-  memset(is_marked, 0, complex->balls->ball_count);
-  mlim_status status = MLIM_OK;
-  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count && status == MLIM_OK; ++v)
-  {
-    const int32_t ball = complex->vertices[v].ball;
-    if (ball < 0)
-    {
-      continue;
-    }
-    mlim_disk disk;
-    status =
-      mlim_disk_check(complex, &refinement->links, (int32_t)v, &refinement->star, context, &disk);
-    if (status == MLIM_OK && disk == MLIM_DISK_FAILS)
-    {
-      is_marked[ball] = 1;
-      ++*count;
-    }
-  }
-  return status;
-}
 
 mlim_status mlim_refine_count_disks(
   mlim_refinement* refinement, mlim_context* context, size_t* count)

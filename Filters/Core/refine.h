@@ -25,9 +25,12 @@ typedef struct mlim_refinement
   double progress;          /* last reported */
 } mlim_refinement;
 
-/* Inserts the balls, records the complex. Points of the outcome are seeded by the caller. */
+/* Inserts the balls, records the complex; the caller seeds it. Balls that lie inside others or hold
+   the centre of one are marked (one byte each) and counted; if there are any, they have to be taken
+   out and the start made again: nothing is recorded then. */
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
-  const mlim_balls* balls, const mlim_options* options, mlim_context* context);
+  const mlim_balls* balls, const mlim_options* options, mlim_context* context,
+  unsigned char* is_hidden, size_t* hidden_count);
 void mlim_refine_free(mlim_refinement* refinement);
 
 /* Refines until nothing that is bad by the goal can be mended. MLIM_VERTEX_LIMIT: stopped early,
@@ -36,11 +39,6 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
 
 /* Tells the host how far refinement is. */
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context);
-
-/* Balls (one byte each) that stand in the way of the topology: a foreign sheet touches them, or
-   their star fails the disk condition. *count: how many. */
-mlim_status mlim_refine_find_balls(
-  mlim_refinement* refinement, unsigned char* is_marked, mlim_context* context, size_t* count);
 
 /* Number of vertices that fail the disk condition. */
 mlim_status mlim_refine_count_disks(

@@ -55,7 +55,8 @@ static inline void random_field_make(
     .arrays = f->arrays,
     .background = MLIM_BACKGROUND_ARRAY,
     .background_array = 0,
-    .tie_breaking = MLIM_TIE_LOWEST_INDEX };
+    .tie_breaking = MLIM_TIE_LOWEST_INDEX,
+    .unseen = MLIM_UNSEEN_KEEP };
   for (int k = 0; k < 3; ++k)
   {
     f->grid.dims[k] = f->dims[k];
@@ -91,8 +92,8 @@ static inline int32_t random_field_label(
       const int x = cell[0] + (c & 1);
       const int y = cell[1] + (c >> 1 & 1);
       const int z = cell[2] + (c >> 2 & 1);
-      const double weight = (c & 1 ? at[0] : 1 - at[0]) * (c & 2 ? at[1] : 1 - at[1]) *
-        (c & 4 ? at[2] : 1 - at[2]);
+      const double weight =
+        (c & 1 ? at[0] : 1 - at[0]) * (c & 2 ? at[1] : 1 - at[1]) * (c & 4 ? at[2] : 1 - at[2]);
       sum += weight * (double)f->values[l][x + f->dims[0] * (y + f->dims[1] * z)];
     }
     second = sum > best ? best : sum > second ? sum : second;

@@ -35,7 +35,8 @@ static inline image* image_sample(const int32_t dims[3], const double spacing[3]
   im->grid = (mlim_grid){ .array_count = (size_t)label_count,
     .arrays = im->arrays,
     .background = background < 0 ? MLIM_BACKGROUND_NONE : MLIM_BACKGROUND_ARRAY,
-    .background_array = background < 0 ? 0 : (size_t)background };
+    .background_array = background < 0 ? 0 : (size_t)background,
+    .unseen = MLIM_UNSEEN_KEEP };
   memcpy(im->grid.dims, dims, sizeof im->grid.dims);
   memcpy(im->grid.spacing, spacing, sizeof im->grid.spacing);
   for (int label = 0; label < label_count; ++label)
@@ -76,6 +77,7 @@ static inline mlim_options run_options(double unit)
     .facet_radius_edge_ratio = 1,
     .ball_radius_scale = 1,
     .junction_merge_tolerance = -1,
+    .volume_tolerance = 0.02,
     .oracle_mode = MLIM_ORACLE_EXACT,
     .vertex_limit = 100000,
     .min_component_voxels = 1 };

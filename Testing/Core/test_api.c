@@ -70,6 +70,7 @@ static void test_ranges(const mlim_field* field)
       INF },
     { "FacetRadiusEdgeRatio", offsetof(mlim_options, facet_radius_edge_ratio), 0.6, 0.5999999,
       INF },
+    { "VolumeTolerance", offsetof(mlim_options, volume_tolerance), 0, BELOW_ZERO, 1 },
     { "BallRadiusScale", offsetof(mlim_options, ball_radius_scale), 1, 0, 1.0000001 },
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
@@ -122,7 +123,7 @@ static void test_defaults(const mlim_grid* plain)
     CHECK_BELOW(fabs(o.edge_size - 2 * scale), tolerance);
     CHECK_BELOW(fabs(o.crossing_tolerance - 1e-6 * scale), tolerance);
     CHECK_BELOW(fabs(o.junction_merge_tolerance - 0.25 * scale), tolerance);
-    CHECK_BELOW(fabs(o.smallest_distance - 0.1 * scale), tolerance);
+    CHECK_BELOW(fabs(o.smallest_distance - 0.25 * scale), tolerance);
     mlim_options again = o;
     CHECK(mlim_options_complete(field, NULL, &again) == MLIM_OK);
     CHECK(memcmp(&again, &o, sizeof o) == 0);
@@ -134,7 +135,12 @@ static void test_defaults(const mlim_grid* plain)
     CHECK(mlim_options_complete(field, NULL, &sized) == MLIM_OK);
     CHECK_BELOW(fabs(sized.facet_distance - 0.5 * scale), tolerance);
     CHECK_BELOW(fabs(sized.edge_size - 4 * scale), tolerance);
-    CHECK_BELOW(sized.junction_merge_tolerance, 0); /* 0 means never */
+    CHECK_BELOW(fabs(sized.smallest_distance - 0.5 * scale), tolerance);
+    sized.facet_size = 40 * scale;
+    sized.smallest_distance = 0;
+    CHECK(mlim_options_complete(field, NULL, &sized) == MLIM_OK);
+    CHECK_BELOW(fabs(sized.smallest_distance - 0.5 * scale), tolerance); /* at most */
+    CHECK_BELOW(sized.junction_merge_tolerance, 0);                      /* 0 means never */
     mlim_field_free(field);
   }
 }

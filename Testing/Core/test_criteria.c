@@ -18,6 +18,7 @@ typedef struct five
   mlim_cell cells[2];
   mlim_facet facet;
   mlim_complex complex;
+  double distance_shares[2];
   mlim_balls balls;
   mlim_options options;
 } five;
@@ -29,10 +30,11 @@ static int32_t ball_sets[] = { 0, 1 };
 
 static void set_up(five* f, const mlim_field* field)
 {
-  *f = (five){ .options = { .facet_size = 100,
-                 .facet_distance = 100,
-                 .facet_radius_edge_ratio = 100,
-                 .smallest_distance = 1e-3 },
+  *f = (five){ .distance_shares = { 1, 1 },
+    .options = { .facet_size = 100,
+      .facet_distance = 100,
+      .facet_radius_edge_ratio = 100,
+      .smallest_distance = 1e-3 },
     .balls = { .ball_count = 2,
       .ball_sets = ball_sets,
       .sets = { .count = 2, .offsets = set_offsets, .labels = set_labels } } };
@@ -59,7 +61,8 @@ static void set_up(five* f, const mlim_field* field)
     .vertices = f->vertices,
     .vertex_count = 5,
     .cells = f->cells,
-    .cell_count = 2 };
+    .cell_count = 2,
+    .distance_shares = f->distance_shares };
 }
 
 static mlim_badness judge(const five* f)
@@ -104,6 +107,26 @@ static void test_measures(const mlim_field* field)
     /* A facet without extent is bad, not undecided. */
     memcpy(f.vertices[2].point, POINTS[1], sizeof POINTS[1]);
     CHECK(judge(&f) != MLIM_BAD_NONE);
+  }
+}
+
+/* The distance is the height above the facet's plane, wherever the crossing is, and a label that may
+   lose less has a smaller bound. */
+static void test_distance(const mlim_field* field)
+{
+  for (int label = 0; label < 2; ++label)
+  {
+    five f;
+    set_up(&f, field);
+    f.facet.crossing[0] = 0.2;
+    f.options.facet_distance = HEIGHT * (1 + STEP);
+    CHECK(judge(&f) == MLIM_BAD_NONE);
+    f.distance_shares[label] = 0.5;
+    CHECK(judge(&f) == MLIM_BAD_DISTANCE);
+    f.options.facet_distance = 2 * HEIGHT * (1 + STEP);
+    CHECK(judge(&f) == MLIM_BAD_NONE);
+    f.options.facet_distance = 2 * HEIGHT * (1 - STEP);
+    CHECK(judge(&f) == MLIM_BAD_DISTANCE);
   }
 }
 
@@ -220,6 +243,7 @@ int main(void)
   mlim_field* field = NULL;
   CHECK(mlim_field_create(&im->grid, NULL, &field) == MLIM_OK);
   test_measures(field);
+  test_distance(field);
   test_order(field);
   test_sheets(field);
   test_floor(field);

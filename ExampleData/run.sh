@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Builds the project, meshes an image, prints a report, and writes .vtp files and a picture.
+#
+#   bash ExampleData/run.sh [IMAGE.vti] [OPTION VALUE ...]
+#
+# IMAGE.vti  default: the eight spheres beside this script
+# OPTION     of mlim.mesh, with dashes: --facet-size 1.5; and --output FOLDER
+#            (default: build/example/<name of the image>)
+#
+# Installs with apt-get the packages that are missing.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+repository=$(dirname "$here")
+# shellcheck source-path=SCRIPTDIR source=../.ci/steps.sh
+source "$repository/.ci/steps.sh"
+
+image=$here/spheres.vti
+if [[ $# -gt 0 && "$1" != --* ]]; then
+  image=$(realpath "$1")
+  shift
+fi
+name=$(basename "$image" .vti)
+output=$repository/build/example/$name
+options=()
+while [[ $# -gt 0 ]]; do
+  if [[ "$1" != --* || $# -lt 2 ]]; then
+    echo "expected OPTION VALUE, not: $*" >&2
+    exit 2
+  fi
+  if [[ "$1" == --output ]]; then
+    output=$2
+  else
+    options+=("$1" "$2")
+  fi
+  shift 2
+done
+
+packages=("${build_packages[@]}")
+if [[ -z "${DISPLAY:-}" ]]; then
+  packages+=("${screen_packages[@]}")
+fi
+install_packages "${packages[@]}"
+build_preset release
+
+mkdir -p "$output"
+output=$(realpath "$output")
+say "Meshing $name"
+PYTHONPATH=$(python_path "$repository/build/release") \
+  "$python" "$here/mesh.py" "$image" "$output" "${options[@]}"
+say "Rendering $name"
+on_screen "$python" "$here/render.py" "$output/surface.vtp" "$output/$name.png"
+ls -l "$output"

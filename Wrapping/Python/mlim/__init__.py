@@ -1,0 +1,30 @@
+"""Interface meshes of multi-label images.
+
+    import mlim
+    surface = mlim.mesh("atlas.vti", facet_size=2.0)
+    print(mlim.report(surface))
+
+The filters are here as well, for pipelines: vtkMultiLabelInterfaceMesher,
+vtkMultiLabelCurveExtractor and vtkMultiLabelCurveProtector.
+"""
+
+from .meshing import MeshError, mesh
+from .readers import read
+from .reporting import report
+from .vtkMultiLabelInterfaceMesher import (
+    vtkMultiLabelCurveExtractor,
+    vtkMultiLabelCurveProtector,
+    vtkMultiLabelImageAlgorithm,
+    vtkMultiLabelInterfaceMesher,
+)
+
+__all__ = [
+    "MeshError",
+    "mesh",
+    "read",
+    "report",
+    "vtkMultiLabelCurveExtractor",
+    "vtkMultiLabelCurveProtector",
+    "vtkMultiLabelImageAlgorithm",
+    "vtkMultiLabelInterfaceMesher",
+]

@@ -1,0 +1,91 @@
+"""What a mesh says about itself, as text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+_COUNTS = (
+    ("vertices", "VertexCount"),
+    ("triangles", "TriangleCount"),
+    ("patches", "PatchCount"),
+    ("curves", "CurveCount"),
+    ("junctions", "JunctionCount"),
+    ("protecting balls", "BallCount"),
+)
+_LENGTHS = (
+    ("facet size", "FacetSize"),
+    ("facet distance", "FacetDistance"),
+    ("edge size", "EdgeSize"),
+)
+_QUALITY = (
+    ("largest radius-edge ratio", "MaxRadiusEdgeRatio"),
+    ("largest beside curves", "MaxBallRadiusEdgeRatio"),
+    ("mean radius-edge ratio", "MeanRadiusEdgeRatio"),
+    ("smallest angle, degrees", "MinAngle"),
+    ("smallest dihedral angle at curves", "MinDihedralAngle"),
+)
+_UNDONE = (
+    ("crossings", "UnresolvedCrossingCount"),
+    ("patches", "UnresolvedPatchCount"),
+    ("size", "UnresolvedSizeCount"),
+    ("distance", "UnresolvedDistanceCount"),
+    ("ratio", "UnresolvedRatioCount"),
+    ("ratio beside curves", "UnresolvedBallRatioCount"),
+)
+_TIMES = (
+    ("field", "TimeField"),
+    ("curves", "TimeCurves"),
+    ("balls", "TimeBalls"),
+    ("surface", "TimeSurface"),
+    ("certificate", "TimeCertificate"),
+)
+
+
+def report(surface: vtkPolyData) -> str:
+    """Counts, quality, certificate and times of a mesh that mlim.mesh or the filter made.
+
+    Several lines without a newline at the end. Raises ValueError for another polydata.
+    """
+    arrays = surface.GetFieldData()
+
+    def value(name: str) -> float:
+        array = arrays.GetArray(name)
+        if array is None or array.GetNumberOfValues() < 1:
+            raise ValueError(f"this polydata has no field data array {name}: not a finished mesh")
+        return array.GetVariantValue(0).ToDouble()
+
+    def rows(entries, form: str) -> list[str]:
+        return [f"  {title:<36}{value(name):{form}}" for title, name in entries]
+
+    undone = [f"{value(n):.0f} {t}" for t, n in _UNDONE if value(n) > 0]
+    if value("VertexLimitReached"):
+        undone.append("stopped at the vertex limit")
+    lines = ["Mesh", *rows(_COUNTS, "14,.0f"), *rows(_LENGTHS, "14.6g")]
+    lines += ["Quality", *rows(_QUALITY, "14.3f")]
+    lines += [f"  {'triangles left undone':<36}{', '.join(undone) or 'none':>14}"]
+    lines += ["Certificate"]
+    lines += [_of("labels in the mesh", value, "LostLabelCount", "CertifiedLabelCount")]
+    lines += [_of("components in the mesh", value, "LostComponentCount", "CertifiedComponentCount")]
+    lines += [_of("grid crossings near the mesh", value, "FarCrossingCount", "GridCrossingCount")]
+    lines += rows(
+        (
+            ("farthest grid crossing", "MaxCrossingDistance"),
+            ("largest relative volume difference", "MaxVolumeDifference"),
+        ),
+        "14.4g",
+    )
+    lines += rows(
+        (("vertices off the disk condition", "DiskFailureCount"), ("open edges", "OpenEdgeCount")),
+        "14,.0f",
+    )
+    lines += ["Seconds", *rows(_TIMES, "14.2f")]
+    lines += [f"  {'in all':<36}{sum(value(name) for _, name in _TIMES):14.2f}"]
+    return "\n".join(lines)
+
+
+def _of(title: str, value, lost: str, total: str) -> str:
+    text = f"{value(total) - value(lost):,.0f} of {value(total):,.0f}"
+    return f"  {title:<36}{text:>14}"
