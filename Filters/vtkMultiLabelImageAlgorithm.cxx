@@ -24,6 +24,7 @@ void vtkMultiLabelImageAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BackgroundArrayName: " << this->BackgroundArrayName << "\n";
   os << indent << "TieBreaking: " << (this->TieBreaking == Smooth ? "Smooth" : "LowestIndex")
      << "\n";
+  os << indent << "UnseenLabels: " << (this->UnseenLabels == Drop ? "Drop" : "Keep") << "\n";
   os << indent << "JunctionMergeTolerance: " << this->JunctionMergeTolerance << "\n";
 }
 
@@ -70,6 +71,7 @@ vtkMultiLabel::Choice vtkMultiLabelImageAlgorithm::GetChoice()
   choice.BackgroundValue = this->BackgroundValue;
   choice.BackgroundArrayName = this->BackgroundArrayName;
   choice.TieBreaking = this->TieBreaking == Smooth ? MLIM_TIE_SMOOTH : MLIM_TIE_LOWEST_INDEX;
+  choice.UnseenLabels = this->UnseenLabels == Drop ? MLIM_UNSEEN_DROP : MLIM_UNSEEN_KEEP;
   return choice;
 }
 

@@ -56,6 +56,13 @@ public:
     LowestIndex ///< The first array wins; the interface follows voxel faces there.
   };
 
+  /** What happens to a label between grid points none of which has it. */
+  enum UnseenLabelModes
+  {
+    Drop, ///< Where it is not seen a label is at most second.
+    Keep  ///< The interpolants decide everywhere.
+  };
+
   /**
    * The arrays to use. None enabled (the default): all with one component. An enabled array that
    * the image does not have is an error.
@@ -97,6 +104,18 @@ public:
 
   ///@{
   /**
+   * Drop or Keep. Default: Drop. Drop: a label that none of the 27 grid points round a grid point
+   * has is at most second there: films, wedges and specks that no voxel sees do not become sheets.
+   * Keep: the interpolants decide everywhere, as in the paper.
+   */
+  vtkSetClampMacro(UnseenLabels, int, Drop, Keep);
+  vtkGetMacro(UnseenLabels, int);
+  void SetUnseenLabelsToDrop() { this->SetUnseenLabels(Drop); }
+  void SetUnseenLabelsToKeep() { this->SetUnseenLabels(Keep); }
+  ///@}
+
+  ///@{
+  /**
    * Junctions of curves that are closer than this become one, in world units. Default: 0, which
    * means a quarter of the spacing (the cube root of the voxel's volume).
    */
@@ -128,6 +147,7 @@ private:
   double BackgroundValue = 0.0;
   std::string BackgroundArrayName;
   int TieBreaking = Smooth;
+  int UnseenLabels = Drop;
   double JunctionMergeTolerance = 0.0;
 };
 

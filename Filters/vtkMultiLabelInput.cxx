@@ -162,6 +162,7 @@ Input::Input(vtkImageData* image, const Choice& choice)
   this->Grid.arrays = this->Arrays.data();
   this->Grid.is_outside = this->Outside.empty() ? nullptr : this->Outside.data();
   this->Grid.tie_breaking = choice.TieBreaking;
+  this->Grid.unseen = choice.UnseenLabels;
 }
 
 std::string Input::NameOfLabel(int32_t label) const

@@ -79,6 +79,7 @@ void vtkMultiLabelInterfaceMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FacetSize: " << this->FacetSize << "\n";
   os << indent << "FacetRadiusEdgeRatio: " << this->FacetRadiusEdgeRatio << "\n";
   os << indent << "FacetDistance: " << this->FacetDistance << "\n";
+  os << indent << "VolumeTolerance: " << this->VolumeTolerance << "\n";
   os << indent << "EdgeSize: " << this->EdgeSize << "\n";
   os << indent << "BallRadiusScale: " << this->BallRadiusScale << "\n";
   os << indent << "CrossingTolerance: " << this->CrossingTolerance << "\n";
@@ -140,6 +141,7 @@ void vtkMultiLabelInterfaceMesher::Mesh(vtkImageData* image, vtkPolyData* balls,
   options.facet_size = this->FacetSize;
   options.facet_radius_edge_ratio = this->FacetRadiusEdgeRatio;
   options.facet_distance = this->FacetDistance;
+  options.volume_tolerance = this->VolumeTolerance;
   options.edge_size = this->EdgeSize;
   options.ball_radius_scale = this->BallRadiusScale;
   options.crossing_tolerance = this->CrossingTolerance;

@@ -14,9 +14,9 @@
  *
  * Port 0 in: vtkImageData, see vtkMultiLabelImageAlgorithm. A region that reaches the image's box
  * is closed by a flat cap on the box's face. Port 1 in, optional: the balls of
- * vtkMultiLabelCurveProtector for the same image and arrays. Without it this filter extracts and
- * protects the curves itself, with the same result. With it, EdgeSize, BallRadiusScale and
- * JunctionMergeTolerance are those the balls were made with.
+ * vtkMultiLabelCurveProtector for the same image, arrays, TieBreaking and UnseenLabels. Without it
+ * this filter extracts and protects the curves itself, with the same result. With it, EdgeSize,
+ * BallRadiusScale and JunctionMergeTolerance are those the balls were made with.
  *
  * Output: vtkPolyData in world space; verts (junctions), lines (curve edges) and triangles.
  *
@@ -30,8 +30,9 @@
  * - `NodeType` (int): 2 on an interface, 3 on a curve, 4 a junction, and 10 more on the box.
  * - `NumberOfLabels` (int): how many labels meet there, the outside being one.
  *
- * VTK numbers cells by kind: verts, lines, polygons. Filters that take the n-th tuple for the n-th
- * polygon, as vtkSurfaceNetsAtlas does, need OutputCurves off.
+ * vtkSurfaceNetsAtlas takes this output with OutputCurves off only. It pairs the n-th tuple of
+ * `BoundaryLabels` with the n-th polygon, but the tuples of verts and lines come first, as VTK
+ * numbers cells by kind: verts, lines, polygons. The same holds for any filter that does so.
  *
  * Field data:
  * - `LabelIds`, `LabelNames` and `LabelVolumes`: one entry a label, the background's among them.
@@ -39,10 +40,15 @@
  *   below which no two vertices are made; and the grid (`GridDimensions`, `GridSpacing`,
  *   `GridPosition`, `GridDirection`).
  * - Counts, caps included: `VertexCount`, `TriangleCount`, `PatchCount`, `CurveCount`,
- *   `CurveEdgeCount`, `JunctionCount`, `BallCount`, `InsertionCount`, `SplitBallCount`.
+ *   `CurveEdgeCount`, `JunctionCount`, `BallCount`, `InsertionCount`;
+ *   `HiddenBallCount`: protecting balls left out because another one covers them;
+ *   `RelabeledCellCount`: small cells whose label was changed to mend the topology below the
+ *   smallest distance.
  * - Certificate: `CertifiedLabelCount`, `LostLabelCount`, `CertifiedComponentCount`,
  *   `LostComponentCount`, `DiskFailureCount`, `OpenEdgeCount`, `GridCrossingCount`,
- *   `FarCrossingCount`, `MaxCrossingDistance`, `MaxVolumeDifference`.
+ *   `FarCrossingCount`, `MaxCrossingDistance`, `MaxVolumeDifference`. The latter compares each
+ *   region with the volume where its label's interpolant is largest, over labels of at least 1000
+ *   voxels.
  * - Left undone: `UnresolvedCrossingCount`, `UnresolvedPatchCount`, `UnresolvedSizeCount`,
  *   `UnresolvedDistanceCount`, `UnresolvedRatioCount`, `UnresolvedBallRatioCount`, and
  *   `VertexLimitReached` (0 or 1).
@@ -114,6 +120,15 @@ public:
 
   ///@{
   /**
+   * Regions of at least 1000 voxels are meshed finer than FacetDistance where their volume would
+   * differ by more than this part from the image's, from 0 to 0.999. 0: off. Default: 0.02.
+   */
+  vtkSetClampMacro(VolumeTolerance, double, 0.0, 0.999);
+  vtkGetMacro(VolumeTolerance, double);
+  ///@}
+
+  ///@{
+  /**
    * Largest distance of neighbours on a curve, in world units. Default: 0, which means FacetSize.
    * Not used with balls on the second port.
    */
@@ -158,7 +173,10 @@ public:
   ///@}
 
   ///@{
-  /** Whether curve edges and junctions are part of the output, as lines and verts. Default: on. */
+  /**
+   * Whether curve edges and junctions are part of the output, as lines and verts. Default: on.
+   * vtkSurfaceNetsAtlas needs it off.
+   */
   vtkSetMacro(OutputCurves, bool);
   vtkGetMacro(OutputCurves, bool);
   vtkBooleanMacro(OutputCurves, bool);
@@ -204,6 +222,7 @@ private:
   double FacetSize = 0.0;
   double FacetRadiusEdgeRatio = 1.0;
   double FacetDistance = 0.0;
+  double VolumeTolerance = 0.02;
   double EdgeSize = 0.0;
   double BallRadiusScale;
   double CrossingTolerance = 0.0;

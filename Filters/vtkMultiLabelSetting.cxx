@@ -19,13 +19,13 @@ namespace vtkMultiLabel
 namespace
 {
 
-struct Length
+struct Real
 {
   const char* Name;
   double mlim_options::*Member;
 };
 
-const Length lengths[] = {
+const Real reals[] = {
   { "FacetSize", &mlim_options::facet_size },
   { "FacetRadiusEdgeRatio", &mlim_options::facet_radius_edge_ratio },
   { "FacetDistance", &mlim_options::facet_distance },
@@ -34,6 +34,7 @@ const Length lengths[] = {
   { "CrossingTolerance", &mlim_options::crossing_tolerance },
   { "JunctionMergeTolerance", &mlim_options::junction_merge_tolerance },
   { "SmallestDistance", &mlim_options::smallest_distance },
+  { "VolumeTolerance", &mlim_options::volume_tolerance },
 };
 
 vtkDataArray* Find(vtkFieldData* arrays, const char* name, const std::string& what)
@@ -64,9 +65,9 @@ Setting MakeSetting(const mlim_field* field, const Input& input)
 void WriteSetting(const Setting& setting, vtkFieldData* out)
 {
   WriteFrame(setting.GridFrame, out);
-  for (const Length& length : lengths)
+  for (const Real& real : reals)
   {
-    WriteValue(length.Name, setting.Options.*length.Member, out);
+    WriteValue(real.Name, setting.Options.*real.Member, out);
   }
   WriteCount("OracleMode", static_cast<size_t>(setting.Options.oracle_mode), out);
   WriteCount("VertexLimit", setting.Options.vertex_limit, out);
@@ -88,9 +89,9 @@ Setting ReadSetting(vtkFieldData* arrays, const std::string& what)
 {
   Setting setting;
   setting.GridFrame = ReadFrame(arrays, what);
-  for (const Length& length : lengths)
+  for (const Real& real : reals)
   {
-    setting.Options.*length.Member = Find(arrays, length.Name, what)->GetComponent(0, 0);
+    setting.Options.*real.Member = Find(arrays, real.Name, what)->GetComponent(0, 0);
   }
   auto count = [&](const char* name)
   {

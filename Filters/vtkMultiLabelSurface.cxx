@@ -207,7 +207,8 @@ void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
   WriteCount("UnresolvedDistanceCount", report.unresolved_distance_count, field);
   WriteCount("UnresolvedRatioCount", report.unresolved_ratio_count, field);
   WriteCount("UnresolvedBallRatioCount", report.unresolved_ball_ratio_count, field);
-  WriteCount("SplitBallCount", report.split_ball_count, field);
+  WriteCount("HiddenBallCount", report.hidden_ball_count, field);
+  WriteCount("RelabeledCellCount", report.relabeled_cell_count, field);
   WriteValue("MaxRadiusEdgeRatio", report.max_radius_edge_ratio, field);
   WriteValue("MeanRadiusEdgeRatio", report.mean_radius_edge_ratio, field);
   WriteValue("MaxBallRadiusEdgeRatio", report.max_ball_radius_edge_ratio, field);

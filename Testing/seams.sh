@@ -13,29 +13,30 @@ fail() {
   failures=$((failures + 1))
 }
 
-# Place, part, files. A file includes files of earlier places and of its own part; two parts of one
-# place do not see each other. A file of two words belongs to its first one: field_build to field.
+# Place, part, files. A file includes files of earlier places, and of its own part those to its left;
+# two parts of one place do not see each other. A file of two words that is not named belongs to its
+# first one: field_build to field.
 order='
-0 base          mlim vector
-1 services      memory status geometry
-2 pieces        samples cubic label_sets point_grid tie
+0 base          mlim vector cubic tie
+1 services      memory status
+2 pieces        samples label_sets point_grid
 3 field         plateau field options components
-4 oracle        oracle
-4 curves        network curve_face curve_cell crease grow clean curves
+4 oracle        oracle crossings
+4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         radius_map span balls
 5 triangulation delaunay
 6 criteria      complex criteria disk
-7 refinement    queue seeds refine cells
-8 products      edges nearest mesh quality certificate
-9 whole         build
+7 refinement    queue seeds refine tidy
+8 products      volumes edges nearest mesh quality certificate
+9 whole         verify build
 '
 
-# place_of FILE : "place part", or nothing.
+# place_of FILE : "place part column", or nothing.
 place_of() {
   local name=${1##*/} try
   name=${name%.*}
   for try in "$name" "${name%%_*}" "${name%%_*}s"; do
-    awk -v try="$try" '{ for (i = 3; i <= NF; ++i) if ($i == try) print $1, $2 }' <<<"$order"
+    awk -v try="$try" '{ for (i = 3; i <= NF; ++i) if ($i == try) print $1, $2, i }' <<<"$order"
   done | head -n 1
 }
 
@@ -44,22 +45,29 @@ includes() {
 }
 
 check_order() {
-  local file other own_place own_part place part
+  local file other own_place own_part own_column place part column name
   for file in "$core"/*.c "$core"/*.h; do
-    read -r own_place own_part <<<"$(place_of "$file")"
+    read -r own_place own_part own_column <<<"$(place_of "$file")"
     if [[ -z "$own_place" ]]; then
       fail "$file has no place in the order of Testing/seams.sh"
       continue
     fi
     while IFS= read -r other; do
-      read -r place part <<<"$(place_of "$other")"
+      read -r place part column <<<"$(place_of "$other")"
       if [[ -z "$place" || ! -f "$core/$other" ]]; then
         fail "$file includes $other, which is not of the core"
       elif [[ "$part" != "$own_part" ]] && ((place >= own_place)); then
         fail "$file ($own_part) includes $other ($part)"
+      elif [[ "$part" == "$own_part" ]] && ((column > own_column)); then
+        fail "$file includes $other, which stands to its right in $part"
       fi
     done < <(includes "$file")
   done
+  while IFS= read -r name; do
+    if [[ ! -f "$core/$name.h" && ! -f "$core/$name.c" ]]; then
+      fail "the order of Testing/seams.sh names $name, which is not there"
+    fi
+  done < <(awk '{ for (i = 3; i <= NF; ++i) print $i }' <<<"$order")
 }
 
 # forbid TEXT PATTERN FILE... : no line of code of the files matches; comments do not count.

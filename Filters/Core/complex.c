@@ -70,6 +70,33 @@ void mlim_complex_facet_vertices(
   out[2] = v[(index + (is_odd ? 2 : 3)) & 3];
 }
 
+int32_t mlim_complex_face(const mlim_complex* complex, int32_t cell, int index)
+{
+  const double* size = mlim_field_grid_of(complex->oracle.field)->size;
+  const int32_t* v = complex->cells[cell].vertices;
+  for (int32_t face = 0; face < 6; ++face)
+  {
+    /* Points are put on a face exactly. */
+    const int axis = face >> 1;
+    const double plane = face & 1 ? size[axis] : 0;
+    int k = 1;
+    while (k < 4)
+    {
+      const double x = complex->vertices[v[(index + k) & 3]].point[axis];
+      if (x < plane || x > plane)
+      {
+        break;
+      }
+      ++k;
+    }
+    if (k == 4)
+    {
+      return face;
+    }
+  }
+  return -1;
+}
+
 static int has_code(const mlim_balls* balls, int32_t set, int32_t code)
 {
   for (size_t k = balls->sets.offsets[set]; k < balls->sets.offsets[set + 1]; ++k)

@@ -106,6 +106,9 @@ mlim_status mlim_complex_record_all(mlim_complex* complex, mlim_context* context
 void mlim_complex_facet_vertices(
   const mlim_complex* complex, int32_t cell, int index, int32_t out[3]);
 
+/* The face of the box in which facet `index` of a cell lies, -1 for one inside the box. */
+int32_t mlim_complex_face(const mlim_complex* complex, int32_t cell, int index);
+
 /* Whether a sheet passes through a vertex: it is the vertex's own, or belongs to its curve. */
 int mlim_complex_is_on_sheet(
   const mlim_complex* complex, const mlim_vertex* vertex, const mlim_sheet* sheet);

@@ -127,7 +127,10 @@ static int collect_link(mlim_star* star)
       return 1;
     }
   }
-  qsort(star->link, star->link_count, sizeof *star->link, compare_ids);
+  if (star->link_count > 1)
+  {
+    qsort(star->link, star->link_count, sizeof *star->link, compare_ids);
+  }
   size_t kept = 0;
   for (size_t k = 0; k < star->link_count; ++k)
   {

@@ -492,6 +492,9 @@ static mlim_status start_field(
 {
   const mlim_grid* grid = samples->grid;
   mlim_field_grid* g = &field->grid;
+  /* Of numbers near 1, so that powers of two for a spacing give all its digits. */
+  int exponent;
+  (void)frexp(grid->spacing[0], &exponent);
   double volume = 1;
   size_t points = 1;
   size_t bricks = 1;
@@ -503,11 +506,11 @@ static mlim_status start_field(
     g->size[k] = g->cells[k] * g->spacing[k];
     field->inverse_spacing[k] = 1 / g->spacing[k];
     field->bricks[k] = (g->cells[k] + BRICK - 1) / BRICK;
-    volume *= g->spacing[k];
+    volume *= ldexp(g->spacing[k], 1 - exponent);
     points *= (size_t)g->dims[k];
     bricks *= (size_t)field->bricks[k];
   }
-  g->unit = cbrt(volume);
+  g->unit = ldexp(cbrt(volume), exponent - 1);
   g->min_spacing = mlim_min(g->spacing[0], mlim_min(g->spacing[1], g->spacing[2]));
   field->outside_label = samples->outside_label;
   field->label_count =

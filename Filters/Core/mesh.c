@@ -64,8 +64,7 @@ static void read_triangle(reader* r, int32_t id, int index)
   }
   mesh->triangle_labels[2 * t] = labels[0];
   mesh->triangle_labels[2 * t + 1] = labels[1];
-  const int32_t record = cell->facets[index];
-  mesh->triangle_faces[t] = record > 0 ? complex->facets[record].sheet.face : -1;
+  mesh->triangle_faces[t] = mlim_complex_face(complex, id, index);
 }
 
 static size_t count_triangles(const mlim_complex* complex)

@@ -106,8 +106,8 @@ extern "C"
    than the grid can see. A grid point sees a label if one of its 27 neighbours has it. */
 typedef enum mlim_unseen
 {
-  MLIM_UNSEEN_DROP, /* where it is not seen a label is at most second: the film ends there */
-  MLIM_UNSEEN_KEEP  /* the interpolants decide everywhere */
+  MLIM_UNSEEN_KEEP, /* the interpolants decide everywhere */
+  MLIM_UNSEEN_DROP  /* where it is not seen a label is at most second: the film ends there */
 } mlim_unseen;
 
   typedef struct mlim_grid

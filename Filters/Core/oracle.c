@@ -39,7 +39,8 @@ static void emit(walk* w, double t, int32_t to, int32_t face)
     *c = (mlim_crossing){ .from = w->label, .to = to, .face = face };
     for (int k = 0; k < 3; ++k)
     {
-      c->point[k] = w->begin[k] + t * w->extent[k];
+      const double x = w->begin[k] + t * w->extent[k];
+      c->point[k] = mlim_min(mlim_max(x, 0), w->field->grid.size[k]); /* in spite of rounding */
     }
     if (face >= 0)
     {

@@ -2,6 +2,7 @@
 
 #include "memory.h"
 #include "status.h"
+#include "vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -9,32 +10,20 @@
 enum
 {
   MAX_SWEEPS = 12, /* over all cells or vertices; each mends what the one before made mendable */
-  MAX_PART = 24    /* cells of a part of a star that may change together */
+  MAX_PART = 24,   /* cells of a part of a star that may change together */
+  MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
+  MAX_STEPS = 256  /* vertices that one failed vertex may lead to */
 };
 
 /* ---- strays: facets with a vertex that is not on their sheet ---- */
 
-static mlim_sheet sheet_between(int32_t a, int32_t b)
+/* The cells round the box keep their label. Any other lies in the box, also if its power centre does
+   not, and may have every label: caps are the facets next to frozen cells, flat whatever happens. */
+static int is_frozen(const mlim_complex* complex, const mlim_cell* cell)
 {
-  return (mlim_sheet){ .low = a < b ? a : b, .high = a < b ? b : a, .face = -1 };
-}
-
-/* Caps and far vertices are left alone: their facets are judged by the faces of the box. */
-static int touches_outside(const mlim_complex* complex, const mlim_cell* cell)
-{
-  const double* size = mlim_field_grid_of(complex->oracle.field)->size;
-  for (int k = 0; k < 3; ++k)
-  {
-    if (!(cell->center[k] > 0 && cell->center[k] < size[k]))
-    {
-      return 1;
-    }
-  }
   for (int k = 0; k < 4; ++k)
   {
-    if (complex->vertices[cell->vertices[k]].kind == MLIM_VERTEX_FAR ||
-        cell->neighbors[k] == MLIM_NO_CELL ||
-        (cell->facets[k] != 0 && complex->facets[cell->facets[k]].sheet.face >= 0))
+    if (complex->vertices[cell->vertices[k]].kind == MLIM_VERTEX_FAR)
     {
       return 1;
     }
@@ -50,7 +39,9 @@ static int stray_count(
   {
     return 0;
   }
-  const mlim_sheet sheet = sheet_between(label, other);
+  const mlim_sheet sheet = { .low = label < other ? label : other,
+    .high = label < other ? other : label,
+    .face = mlim_complex_face(complex, (int32_t)(cell - complex->cells), index) };
   int count = 0;
   for (int k = 1; k < 4; ++k)
   {
@@ -58,6 +49,33 @@ static int stray_count(
       complex, &complex->vertices[cell->vertices[(index + k) & 3]], &sheet);
   }
   return count;
+}
+
+/* 1 for a facet between two labels whose shape is worse than asked for, away from balls. */
+static int is_misshapen(const mlim_refinement* r, const mlim_cell* cell, int index)
+{
+  const double* p[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    const mlim_vertex* v = &r->complex.vertices[cell->vertices[(index + 1 + k) & 3]];
+    if (v->kind == MLIM_VERTEX_BALL)
+    {
+      return 0;
+    }
+    p[k] = v->point;
+  }
+  double u[3];
+  double v[3];
+  double n[3];
+  mlim_subtract(p[1], p[0], u);
+  mlim_subtract(p[2], p[0], v);
+  mlim_cross(u, v, n);
+  const double a = mlim_dot(u, u);
+  const double b = mlim_dot(v, v);
+  const double c = mlim_distance_squared(p[1], p[2]);
+  /* R^2 = a b c / (4 |n|^2) */
+  const double bound = r->options->facet_radius_edge_ratio;
+  return a * b * c > 4 * mlim_dot(n, n) * bound * bound * mlim_min(a, mlim_min(b, c));
 }
 
 static int cell_strays(const mlim_complex* complex, int32_t id, int32_t label)
@@ -71,7 +89,19 @@ static int cell_strays(const mlim_complex* complex, int32_t id, int32_t label)
   return count;
 }
 
-/* The label for a cell that leaves the fewest strays, among its neighbours' and its own. */
+static int cell_misshapen(const mlim_refinement* r, int32_t id)
+{
+  const mlim_cell* cell = &r->complex.cells[id];
+  int count = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t other = r->complex.cells[cell->neighbors[k]].label;
+    count += cell->label != other && is_misshapen(r, cell, k);
+  }
+  return count;
+}
+
+/* The label for a cell that leaves the fewest strays, among its neighbours', its vertices' and its own. */
 static int32_t best_label(const mlim_complex* complex, int32_t id)
 {
   const mlim_cell* cell = &complex->cells[id];
@@ -107,7 +137,7 @@ static size_t mend_strays(mlim_complex* complex)
     for (size_t c = 0; c < complex->cell_count; ++c)
     {
       mlim_cell* cell = &complex->cells[c];
-      if (cell->vertices[0] < 0 || touches_outside(complex, cell) ||
+      if (cell->vertices[0] < 0 || is_frozen(complex, cell) ||
           cell_strays(complex, (int32_t)c, cell->label) == 0)
       {
         continue;
@@ -129,8 +159,7 @@ size_t mlim_tidy_count_strays(const mlim_complex* complex)
     for (int k = 0; k < 4 && cell->vertices[0] >= 0; ++k)
     {
       const int32_t other = cell->neighbors[k];
-      if (other > (int32_t)c &&
-          (cell->facets[k] == 0 || complex->facets[cell->facets[k]].sheet.face < 0))
+      if (other > (int32_t)c)
       {
         count += stray_count(complex, cell, k, cell->label, complex->cells[other].label) > 0;
       }
@@ -145,20 +174,25 @@ typedef struct tidier
 {
   mlim_refinement* refinement;
   mlim_context* context;
-  mlim_star star;  /* of the failed vertex */
-  mlim_star check; /* of its neighbours */
+  mlim_status status; /* of the checks inside the costs */
+  mlim_star star;     /* of the failed vertex */
+  mlim_star check;    /* of its neighbours */
   int32_t part[MAX_PART];
   int32_t old_labels[MAX_PART];
   size_t part_count;
   int32_t vertices[4 * MAX_PART];
   size_t vertex_count;
+  int32_t seen[MAX_SEEN];
+  size_t seen_count;
+  int32_t pending[MAX_STEPS];
 } tidier;
 
 static int fails(tidier* t, int32_t vertex)
 {
   mlim_disk disk = MLIM_DISK_HOLDS;
-  (void)mlim_disk_check(
+  const mlim_status status = mlim_disk_check(
     &t->refinement->complex, &t->refinement->links, vertex, &t->check, t->context, &disk);
+  t->status = t->status == MLIM_OK ? status : t->status;
   return disk == MLIM_DISK_FAILS;
 }
 
@@ -175,7 +209,7 @@ static int contains(const int32_t* list, size_t count, int32_t value)
 }
 
 /* The cells of the star that are connected with `first` through facets of the star and have its
-   label. Returns 0 when they are too many or touch the outside. */
+   label. Returns 0 when they are too many or one is frozen. */
 static int gather_part(tidier* t, int32_t first, int32_t vertex)
 {
   const mlim_complex* complex = &t->refinement->complex;
@@ -184,7 +218,7 @@ static int gather_part(tidier* t, int32_t first, int32_t vertex)
   for (size_t p = 0; p < t->part_count; ++p)
   {
     const mlim_cell* cell = &complex->cells[t->part[p]];
-    if (touches_outside(complex, cell))
+    if (is_frozen(complex, cell))
     {
       return 0;
     }
@@ -239,6 +273,7 @@ static long cost(tidier* t)
   {
     const int32_t id = t->part[p];
     sum += cell_strays(&t->refinement->complex, id, t->refinement->complex.cells[id].label);
+    sum += cell_misshapen(t->refinement, id);
   }
   return sum;
 }
@@ -289,54 +324,84 @@ static size_t mend_part(tidier* t)
 /* Tries the parts of the star of a failed vertex, then its single cells. */
 static size_t mend_star(tidier* t, int32_t vertex)
 {
-  for (int is_single = 0; is_single < 2; ++is_single)
+  const mlim_complex* complex = &t->refinement->complex;
+  t->seen_count = 0;
+  for (size_t c = 0; c < t->star.cell_count; ++c)
   {
-    for (size_t c = 0; c < t->star.cell_count; ++c)
+    const int32_t id = t->star.cells[c];
+    if (contains(t->seen, t->seen_count, id))
     {
-      if (is_single)
-      {
-        t->part[0] = t->star.cells[c];
-        t->part_count = 1;
-        if (touches_outside(&t->refinement->complex, &t->refinement->complex.cells[t->part[0]]))
-        {
-          continue;
-        }
-      }
-      else if (!gather_part(t, t->star.cells[c], vertex))
-      {
-        continue;
-      }
-      const size_t changed = mend_part(t);
-      if (changed > 0)
-      {
-        return changed;
-      }
+      continue;
+    }
+    const int is_part = gather_part(t, id, vertex);
+    for (size_t p = 0; p < t->part_count && t->seen_count < MAX_SEEN; ++p)
+    {
+      t->seen[t->seen_count++] = t->part[p];
+    }
+    const size_t changed = is_part ? mend_part(t) : 0;
+    if (changed > 0)
+    {
+      return changed;
+    }
+  }
+  for (size_t c = 0; c < t->star.cell_count; ++c)
+  {
+    t->part[0] = t->star.cells[c];
+    t->part_count = 1;
+    const size_t changed = is_frozen(complex, &complex->cells[t->part[0]]) ? 0 : mend_part(t);
+    if (changed > 0)
+    {
+      return changed;
     }
   }
   return 0;
 }
 
+/* Mends one vertex and then, as the change reaches them, the vertices of the changed cells. Each
+   change lowers the cost, so this ends; the limit bounds the time. */
+static mlim_status mend_from(tidier* t, int32_t vertex, size_t* changed)
+{
+  size_t count = 0;
+  t->pending[count++] = vertex;
+  for (int step = 0; count > 0 && step < MAX_STEPS; ++step)
+  {
+    const int32_t v = t->pending[--count];
+    mlim_disk disk;
+    const mlim_status status = mlim_disk_check(
+      &t->refinement->complex, &t->refinement->links, v, &t->star, t->context, &disk);
+    if (status != MLIM_OK)
+    {
+      return status;
+    }
+    const size_t cells = disk == MLIM_DISK_FAILS ? mend_star(t, v) : 0;
+    if (t->status != MLIM_OK)
+    {
+      return t->status;
+    }
+    *changed += cells;
+    for (size_t k = 0; cells > 0 && k < t->vertex_count && count < MAX_STEPS; ++k)
+    {
+      t->pending[count++] = t->vertices[k];
+    }
+  }
+  return MLIM_OK;
+}
+
 static mlim_status mend_disks(tidier* t, size_t* changed)
 {
   mlim_complex* complex = &t->refinement->complex;
-  size_t before = SIZE_MAX;
-  *changed = 0;
-  for (int sweep = 0; sweep < MAX_SWEEPS && *changed != before; ++sweep)
+  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
   {
-    before = *changed;
-    for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
+    mlim_disk disk;
+    mlim_status status =
+      mlim_disk_check(complex, &t->refinement->links, (int32_t)v, &t->star, t->context, &disk);
+    if (status == MLIM_OK && disk == MLIM_DISK_FAILS)
     {
-      mlim_disk disk;
-      mlim_status status =
-        mlim_disk_check(complex, &t->refinement->links, (int32_t)v, &t->star, t->context, &disk);
-      if (status != MLIM_OK)
-      {
-        return status;
-      }
-      if (disk == MLIM_DISK_FAILS)
-      {
-        *changed += mend_star(t, (int32_t)v);
-      }
+      status = mend_from(t, (int32_t)v, changed);
+    }
+    if (status != MLIM_OK)
+    {
+      return status;
     }
   }
   return MLIM_OK;

@@ -45,6 +45,16 @@ using Facet = Regular::Facet;
 // CGAL's own insertion in two halves, without its point location.
 class Triangulation : public Regular
 {
+  // One block at a time: CGAL's reserve leaves several half made when memory runs out.
+  template <typename Container>
+  static void Grow(Container& container, size_t count)
+  {
+    while (container.capacity() - container.size() < count)
+    {
+      container.reserve(container.capacity() + 1);
+    }
+  }
+
 public:
   // Everything that the point conflicts with, from a cell that does.
   void Conflicts(const Weighted& point, CellHandle start, std::vector<Facet>& boundary,
@@ -74,9 +84,18 @@ public:
     }
   }
 
+  // Room for what an insertion makes. CGAL's insertion keeps a map between calls, one a thread; an
+  // exception halfway would leave it half full, and the next insertion anywhere would crash.
+  void Reserve(size_t vertices, size_t cells)
+  {
+    Grow(this->tds().vertices(), vertices);
+    Grow(this->tds().cells(), cells);
+  }
+
   VertexHandle Fill(
     const Weighted& point, const std::vector<Facet>& boundary, const std::vector<CellHandle>& cells)
   {
+    this->Reserve(1, boundary.size());
     if (this->tds().is_small_hole(boundary.size()))
     {
       return this->_insert_in_small_hole(point, cells, boundary);
@@ -138,6 +157,19 @@ void PowerCenter(CellHandle cell, double out[3])
       base[k] +
       0.5 * (right[0] * normal[0][k] + right[1] * normal[1][k] + right[2] * normal[2][k]) / volume;
   }
+}
+
+// A second point at a vertex's place would be hidden, or hide it; CGAL does not expect to be asked.
+bool HasPoint(CellHandle cell, const Weighted& point)
+{
+  for (int k = 0; k < 4; ++k)
+  {
+    if (cell->vertex(k)->point().point() == point.point())
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Runs a function; no exception leaves it.
@@ -252,6 +284,7 @@ struct mlim_delaunay
     // Far enough that no facet of the mesh can see them after the first insertions, near enough not
     // to cost digits; off the cube's corners, since eight points on a sphere are a degenerate start.
     const double largest = std::max(size[0], std::max(size[1], size[2]));
+    this->triangulation.Reserve(MLIM_FAR_VERTICES, 64);
     for (int k = 0; k < MLIM_FAR_VERTICES; ++k)
     {
       const double off = 0.0078125 * k;
@@ -333,7 +366,8 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
         int j;
         from = t.locate(delaunay->point, type, i, j, from);
       }
-      if (from == CellHandle() || t.is_infinite(from) || !t.IsInConflict(delaunay->point, from))
+      if (from == CellHandle() || t.is_infinite(from) || HasPoint(from, delaunay->point) ||
+          !t.IsInConflict(delaunay->point, from))
       {
         return MLIM_OK;
       }

@@ -473,7 +473,7 @@ static inline void audit_partition(const mlim_field* field, const mlim_mesh* mes
   }
 }
 
-/* What holds for a finished mesh. `options` are complete; balls may be split since. */
+/* What holds for a finished mesh. `options` are complete. */
 static inline void audit_mesh(const mlim_field* field, const mlim_balls* balls,
   const mlim_options* options, const mlim_mesh* mesh)
 {
@@ -493,7 +493,7 @@ static inline void audit_mesh(const mlim_field* field, const mlim_balls* balls,
   CHECK_COUNT(audit_count_bad_ratios(&a, options->facet_radius_edge_ratio), 0);
   const double reach = fmax(0.5 * a.unit, 4 * options->facet_distance);
   CHECK_BELOW((double)audit_count_wrong_normals(&a, reach), 0.01 * (double)mesh->triangle_count);
-  if (mesh->report.split_ball_count == 0)
+  if (mesh->report.hidden_ball_count == 0)
   {
     CHECK_COUNT(audit_count_in_balls(&a, balls), 0);
   }

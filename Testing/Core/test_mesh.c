@@ -99,10 +99,11 @@ static void test_filled_box(int kind, double facet_size)
   const mlim_options options = run_options(facet_size);
   image* im = shape_sample(&s);
   run r;
-  CHECK(run_grid(&im->grid, &options, NULL, &r) == MLIM_OK);
+  const mlim_status status = run_grid(&im->grid, &options, NULL, &r);
+  CHECK(status == MLIM_OK);
   double sum = 0;
   double box = 1;
-  for (int32_t l = 0; l < s.label_count; ++l)
+  for (int32_t l = 0; l < s.label_count && status == MLIM_OK; ++l)
   {
     sum += r.mesh.volumes[l];
   }

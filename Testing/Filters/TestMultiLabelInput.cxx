@@ -225,6 +225,39 @@ void CheckIds()
   CHECK((LabelsOf(mesher->GetOutput()) == std::set<int>{ 0, 17 }), "");
 }
 
+// Two labels side by side, and a third that is close behind both everywhere: between the two planes
+// of grid points that they share out, where no grid point has it, its interpolant is the largest.
+void CheckUnseen()
+{
+  const int middle = Size / 2;
+  const double far_behind = -10.0;
+  const double close_behind = 0.9;
+  std::vector<double> left;
+  for (int i = 0; i < Size * Size * Size; ++i)
+  {
+    left.push_back(i % Size < middle ? 1.0 : far_behind);
+  }
+  std::vector<double> right = left;
+  for (double& value : right)
+  {
+    value = value == 1.0 ? far_behind : 1.0;
+  }
+  auto image = MakeGrid();
+  image->GetPointData()->AddArray(MakeArray<vtkFloatArray>("left", left));
+  image->GetPointData()->AddArray(MakeArray<vtkFloatArray>("right", right));
+  image->GetPointData()->AddArray(
+    MakeArray<vtkFloatArray>("film", std::vector<double>(left.size(), close_behind)));
+  auto mesher = MesherOf(image);
+  mesher->Update();
+  CHECK((LabelsOf(mesher->GetOutput()) == std::set<int>{ 0, 1, 2 }), "dropped without being asked");
+  mesher->SetUnseenLabelsToKeep();
+  mesher->Update();
+  CHECK((LabelsOf(mesher->GetOutput()) == std::set<int>{ 0, 1, 2, 3 }), "as the interpolants say");
+  mesher->SetUnseenLabelsToDrop();
+  mesher->Update();
+  CHECK((LabelsOf(mesher->GetOutput()) == std::set<int>{ 0, 1, 2 }), "and back");
+}
+
 void CheckBlanking(vtkPolyData* expected)
 {
   auto image = MakeImage();
@@ -256,6 +289,7 @@ int TestMultiLabelInput(int, char*[])
   CheckSelection();
   CheckBackgrounds(expected);
   CheckIds();
+  CheckUnseen();
   CheckBlanking(expected);
   return Result();
 }

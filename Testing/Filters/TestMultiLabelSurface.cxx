@@ -163,8 +163,9 @@ void CheckArrays()
   CHECK(field->GetArray("FacetSize")->GetComponent(0, 0) == 2.0, "filled in from the spacing");
   CHECK(field->GetArray("LabelIds")->GetNumberOfTuples() == 3, "one id a label");
   CHECK(field->GetAbstractArray("LabelNames")->GetVariantValue(2).ToString() == "second", "");
-  for (const char* name : { "TimeField", "TimeCurves", "TimeBalls", "TimeSurface",
-         "TimeCertificate", "LostLabelCount", "MaxRadiusEdgeRatio" })
+  for (const char* name :
+    { "TimeField", "TimeCurves", "TimeBalls", "TimeSurface", "TimeCertificate", "LostLabelCount",
+      "MaxRadiusEdgeRatio", "HiddenBallCount", "RelabeledCellCount", "MaxVolumeDifference" })
   {
     CHECK(field->GetArray(name) && field->GetArray(name)->GetNumberOfTuples() == 1, name);
   }
@@ -299,10 +300,10 @@ void CheckOptions()
   std::ostringstream text;
   mesher->Print(text);
   for (const char* name : { "PointArraySelection", "BackgroundMode", "BackgroundValue",
-         "BackgroundArrayName", "TieBreaking", "JunctionMergeTolerance", "FacetSize: 1",
-         "FacetRadiusEdgeRatio", "FacetDistance", "EdgeSize", "BallRadiusScale",
-         "CrossingTolerance", "OracleMode", "CapBoundary", "OutputCurves", "MinimumComponentVoxels",
-         "VertexLimit: 60", "OutputPointsPrecision" })
+         "BackgroundArrayName", "TieBreaking", "UnseenLabels: Drop", "JunctionMergeTolerance",
+         "FacetSize: 1", "FacetRadiusEdgeRatio", "FacetDistance", "VolumeTolerance: 0.02",
+         "EdgeSize", "BallRadiusScale", "CrossingTolerance", "OracleMode", "CapBoundary",
+         "OutputCurves", "MinimumComponentVoxels", "VertexLimit: 60", "OutputPointsPrecision" })
   {
     CHECK(Contains(text.str(), name), name);
   }

@@ -47,6 +47,7 @@ class TestMesh(unittest.TestCase):
             "FacetSize": 1.9,
             "FacetRadiusEdgeRatio": 1.2,
             "FacetDistance": 0.31,
+            "VolumeTolerance": 0.05,
             "EdgeSize": 1.3,
             "BallRadiusScale": 0.7,
             "CrossingTolerance": 1e-5,
@@ -60,11 +61,14 @@ class TestMesh(unittest.TestCase):
             facet_size=1.9,
             facet_radius_edge_ratio=1.2,
             facet_distance=0.31,
+            volume_tolerance=0.05,
             edge_size=1.3,
             ball_radius_scale=0.7,
             crossing_tolerance=1e-5,
             junction_merge_tolerance=0.13,
             oracle_mode="bisection",
+            tie_breaking="lowest_index",
+            unseen_labels="keep",
             vertex_limit=12345,
             minimum_component_voxels=41,
             output_curves=False,
@@ -76,6 +80,8 @@ class TestMesh(unittest.TestCase):
         self.assertEqual(surface.GetPoints().GetData().GetDataTypeAsString(), "float")
         with self.assertRaisesRegex(ValueError, "oracle_mode"):
             mlim.mesh(make_image(), oracle_mode="best")
+        with self.assertRaisesRegex(ValueError, "unseen_labels"):
+            mlim.mesh(make_image(), unseen_labels="hide")
 
     def test_errors(self):
         image = make_image()

@@ -27,12 +27,14 @@ def mesh(
     facet_size: float = 0.0,
     facet_radius_edge_ratio: float = 1.0,
     facet_distance: float = 0.0,
+    volume_tolerance: float = 0.02,
     edge_size: float = 0.0,
     ball_radius_scale: float = 1.0,
     crossing_tolerance: float = 0.0,
     junction_merge_tolerance: float = 0.0,
     oracle_mode: str = "exact",
     tie_breaking: str = "smooth",
+    unseen_labels: str = "drop",
     cap_boundary: bool = True,
     output_curves: bool = True,
     minimum_component_voxels: int | None = None,
@@ -51,6 +53,8 @@ def mesh(
         (probabilities).
     Lengths are in world units; 0: from the image's spacing. The class documents each option.
     oracle_mode: "exact" or "bisection". tie_breaking: "smooth" or "lowest_index".
+    unseen_labels: "drop" or "keep".
+    output_curves: False for vtkSurfaceNetsAtlas, which cannot use a surface with curves.
     balls: output of vtkMultiLabelCurveProtector for this image; None: made here.
     progress: True or False: a line on sys.stderr or none; None: a line if that is a terminal; a
         function: called with the fraction done and the stage's name, and stops the run by
@@ -70,12 +74,14 @@ def mesh(
     mesher.SetFacetSize(facet_size)
     mesher.SetFacetRadiusEdgeRatio(facet_radius_edge_ratio)
     mesher.SetFacetDistance(facet_distance)
+    mesher.SetVolumeTolerance(volume_tolerance)
     mesher.SetEdgeSize(edge_size)
     mesher.SetBallRadiusScale(ball_radius_scale)
     mesher.SetCrossingTolerance(crossing_tolerance)
     mesher.SetJunctionMergeTolerance(junction_merge_tolerance)
     mesher.SetOracleMode(_index("oracle_mode", oracle_mode, ("exact", "bisection")))
     mesher.SetTieBreaking(_index("tie_breaking", tie_breaking, ("smooth", "lowest_index")))
+    mesher.SetUnseenLabels(_index("unseen_labels", unseen_labels, ("drop", "keep")))
     mesher.SetCapBoundary(cap_boundary)
     mesher.SetOutputCurves(output_curves)
     if minimum_component_voxels is not None:

@@ -14,6 +14,8 @@ _COUNTS = (
     ("curves", "CurveCount"),
     ("junctions", "JunctionCount"),
     ("protecting balls", "BallCount"),
+    ("balls covered by others", "HiddenBallCount"),
+    ("cells with a mended label", "RelabeledCellCount"),
 )
 _LENGTHS = (
     ("facet size", "FacetSize"),
