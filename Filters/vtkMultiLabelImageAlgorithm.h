@@ -59,8 +59,8 @@ public:
   /** What happens to a label between grid points none of which has it. */
   enum UnseenLabelModes
   {
-    Drop, ///< Where it is not seen a label is at most second.
-    Keep  ///< The interpolants decide everywhere.
+    Keep = 0,
+    Drop = 1
   };
 
   /**
@@ -104,11 +104,11 @@ public:
 
   ///@{
   /**
-   * Drop or Keep. Default: Drop. Drop: a label that none of the 27 grid points round a grid point
-   * has is at most second there: films, wedges and specks that no voxel sees do not become sheets.
-   * Keep: the interpolants decide everywhere, as in the paper.
+   * Keep or Drop. Default: Keep: the interpolants decide everywhere, as in the paper. Drop: a label that none of the 27 grid points round a grid point
+   * has is at most second there: films, wedges and specks that no voxel sees do not become sheets,
+   * which helps with noisy data. The interface moves there by up to the thickness of the film.
    */
-  vtkSetClampMacro(UnseenLabels, int, Drop, Keep);
+  vtkSetClampMacro(UnseenLabels, int, Keep, Drop);
   vtkGetMacro(UnseenLabels, int);
   void SetUnseenLabelsToDrop() { this->SetUnseenLabels(Drop); }
   void SetUnseenLabelsToKeep() { this->SetUnseenLabels(Keep); }
@@ -147,7 +147,7 @@ private:
   double BackgroundValue = 0.0;
   std::string BackgroundArrayName;
   int TieBreaking = Smooth;
-  int UnseenLabels = Drop;
+  int UnseenLabels = Keep;
   double JunctionMergeTolerance = 0.0;
 };
 

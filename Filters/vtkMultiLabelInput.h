@@ -37,7 +37,7 @@ struct Choice
   double BackgroundValue = 0.0;
   std::string BackgroundArrayName; // empty: "background" without regard to case, digits, marks
   mlim_tie_breaking TieBreaking = MLIM_TIE_SMOOTH;
-  mlim_unseen UnseenLabels = MLIM_UNSEEN_DROP;
+  mlim_unseen UnseenLabels = MLIM_UNSEEN_KEEP;
 };
 
 class Input

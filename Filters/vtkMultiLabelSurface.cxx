@@ -208,6 +208,7 @@ void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
   WriteCount("UnresolvedRatioCount", report.unresolved_ratio_count, field);
   WriteCount("UnresolvedBallRatioCount", report.unresolved_ball_ratio_count, field);
   WriteCount("HiddenBallCount", report.hidden_ball_count, field);
+  WriteCount("OffCurveEdgeCount", report.off_curve_edge_count, field);
   WriteCount("RelabeledCellCount", report.relabeled_cell_count, field);
   WriteValue("MaxRadiusEdgeRatio", report.max_radius_edge_ratio, field);
   WriteValue("MeanRadiusEdgeRatio", report.mean_radius_edge_ratio, field);

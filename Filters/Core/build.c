@@ -28,8 +28,15 @@ typedef struct build
   size_t hidden_ball_count;
 } build;
 
-static mlim_status check_balls(const mlim_balls* balls, mlim_context* context)
+static mlim_status check_balls(
+  const mlim_balls* balls, const mlim_options* options, mlim_context* context)
 {
+  if (balls->ball_count > options->vertex_limit)
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+      "VertexLimit is %zu, but there are %zu protecting balls; it has to be larger.",
+      options->vertex_limit, balls->ball_count);
+  }
   for (size_t b = 0; b < balls->ball_count; ++b)
   {
     const double* c = balls->centers + 3 * b;
@@ -199,6 +206,10 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
   }
   if (status == MLIM_OK)
   {
+    status = mlim_quality_add_edges(out, &edges, b->context);
+  }
+  if (status == MLIM_OK)
+  {
     mlim_quality_measure(out, &edges);
     out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &edges);
     out->report.insertion_count = b->refinement.insertion_count;
@@ -244,7 +255,7 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
   mlim_status status = mlim_options_complete(field, context, &complete);
   if (status == MLIM_OK)
   {
-    status = check_balls(balls, context);
+    status = check_balls(balls, &complete, context);
   }
   if (status != MLIM_OK)
   {

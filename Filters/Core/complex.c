@@ -15,7 +15,7 @@ enum
 mlim_status mlim_complex_create(
   const mlim_oracle* oracle, const mlim_balls* balls, mlim_context* context, mlim_complex* out)
 {
-  *out = (mlim_complex){ .oracle = *oracle, .balls = balls };
+  *out = (mlim_complex){ .oracle = *oracle, .balls = balls, .vertex_limit = SIZE_MAX };
   mlim_status status =
     mlim_delaunay_create(mlim_field_grid_of(oracle->field)->size, context, &out->delaunay);
   if (status != MLIM_OK)
@@ -460,6 +460,12 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
 {
   const int is_recorded = complex->cell_count > 0;
   complex->fresh_count = 0;
+  if (complex->vertex_count >= complex->vertex_limit)
+  {
+    return mlim_fail(context, MLIM_VERTEX_LIMIT,
+      "The mesh has %zu vertices, the limit; what is still bad is counted.",
+      complex->vertex_limit - MLIM_FAR_VERTICES);
+  }
   if (mlim_reserve(&complex->vertices, &complex->vertex_capacity, complex->vertex_count + 1,
         sizeof *complex->vertices) ||
       (is_recorded && empty_zone(complex)))

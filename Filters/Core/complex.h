@@ -79,6 +79,7 @@ typedef struct mlim_complex
   size_t fresh_count, fresh_capacity;
   int32_t* dirty; /* vertices with is_dirty */
   size_t dirty_count, dirty_capacity;
+  size_t vertex_limit;     /* with the far ones */
   mlim_delaunay_zone zone; /* of the last probe */
   mlim_vertex pending;
   uint32_t stamp;
@@ -95,7 +96,8 @@ void mlim_complex_free(mlim_complex* complex);
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
   mlim_delaunay_start kind, mlim_context* context, double* power);
 
-/* Inserts the vertex of the last probe, relabels and records. fresh lists the new records. */
+/* Inserts the vertex of the last probe, relabels and records. fresh lists the new records.
+   MLIM_VERTEX_LIMIT, and nothing changes, when that many vertices are there. */
 mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
 
 /* Labels and records everything that is there. For after a first series of insertions; until then

@@ -102,13 +102,13 @@ extern "C"
     MLIM_TIE_LOWEST_INDEX /* the lowest index wins */
   } mlim_tie_breaking;
 
-/* What happens to a label between grid points none of which has it: films, wedges and specks thinner
+  /* What happens to a label between grid points none of which has it: films, wedges and specks thinner
    than the grid can see. A grid point sees a label if one of its 27 neighbours has it. */
-typedef enum mlim_unseen
-{
-  MLIM_UNSEEN_KEEP, /* the interpolants decide everywhere */
-  MLIM_UNSEEN_DROP  /* where it is not seen a label is at most second: the film ends there */
-} mlim_unseen;
+  typedef enum mlim_unseen
+  {
+    MLIM_UNSEEN_KEEP, /* the interpolants decide everywhere */
+    MLIM_UNSEEN_DROP  /* where it is not seen a label is at most second: the film ends there */
+  } mlim_unseen;
 
   typedef struct mlim_grid
   {
@@ -121,7 +121,7 @@ typedef enum mlim_unseen
     size_t background_array; /* with MLIM_BACKGROUND_ARRAY */
     double background_value; /* with MLIM_BACKGROUND_CONSTANT; finite */
     mlim_tie_breaking tie_breaking;
-  mlim_unseen unseen;
+    mlim_unseen unseen;
   } mlim_grid;
 
   /* The index over the grid. Holds no pointer into the grid's arrays once it is made. */
@@ -260,13 +260,14 @@ typedef enum mlim_unseen
     size_t unresolved_distance_count;
     size_t unresolved_ratio_count;      /* without a ball vertex */
     size_t unresolved_ball_ratio_count; /* with a ball vertex: quality gives way near balls */
-    size_t hidden_ball_count;    /* balls left out because another one covers them */
-    size_t relabeled_cell_count;       /* to mend topology below the smallest distance */
-    double max_radius_edge_ratio;      /* triangles without a ball vertex */
-    double mean_radius_edge_ratio;     /* all triangles */
-    double max_ball_radius_edge_ratio; /* triangles with a ball vertex */
-    double min_dihedral_angle;         /* degrees, between sheets round a curve edge; 180 without */
-    double min_angle;                  /* degrees, of all triangles */
+    size_t hidden_ball_count;           /* balls left out because another one covers them */
+    size_t off_curve_edge_count;        /* edges of three or more triangles on no extracted curve */
+    size_t relabeled_cell_count;        /* to mend topology below the smallest distance */
+    double max_radius_edge_ratio;       /* triangles without a ball vertex */
+    double mean_radius_edge_ratio;      /* all triangles */
+    double max_ball_radius_edge_ratio;  /* triangles with a ball vertex */
+    double min_dihedral_angle; /* degrees, between sheets round a curve edge; 180 without */
+    double min_angle;          /* degrees, of all triangles */
   } mlim_report;
 
   /* Node types as materials users know them. */
@@ -291,9 +292,9 @@ typedef enum mlim_unseen
     int32_t* triangle_faces;   /* face of the box for a cap's triangle, else -1 */
     int32_t* triangle_patches; /* connected interface piece, 0 .. patch_count - 1 */
     size_t patch_count;
-    size_t edge_count; /* curve edges */
-    int32_t* edges;    /* 2 vertices each */
-    int32_t* edge_curves;
+    size_t edge_count;    /* curve edges, then those of three or more triangles off the curves */
+    int32_t* edges;       /* 2 vertices each */
+    int32_t* edge_curves; /* -1 off the curves */
     size_t junction_count;
     int32_t* junctions; /* vertices */
     size_t label_count;

@@ -5,6 +5,7 @@
 #include "vector.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static const double DEGREES = 57.29577951308232; /* in a radian */
 
@@ -69,6 +70,75 @@ mlim_status mlim_quality_find_patches(
   }
   mlim_release(parent);
   return MLIM_OK;
+}
+
+static int compare_pairs(const void* a, const void* b)
+{
+  const int32_t* x = (const int32_t*)a;
+  const int32_t* y = (const int32_t*)b;
+  if (x[0] != y[0])
+  {
+    return x[0] < y[0] ? -1 : 1;
+  }
+  return (x[1] > y[1]) - (x[1] < y[1]);
+}
+
+/* The curve edges, the lower vertex first, sorted. */
+static int32_t* sort_curve_edges(const mlim_mesh* mesh)
+{
+  int32_t* pairs = mlim_allocate(mesh->edge_count, 2 * sizeof *pairs);
+  for (size_t e = 0; pairs != NULL && e < mesh->edge_count; ++e)
+  {
+    const int32_t* v = mesh->edges + 2 * e;
+    pairs[2 * e] = v[0] < v[1] ? v[0] : v[1];
+    pairs[2 * e + 1] = v[0] < v[1] ? v[1] : v[0];
+  }
+  if (pairs != NULL && mesh->edge_count > 1)
+  {
+    qsort(pairs, mesh->edge_count, 2 * sizeof *pairs, compare_pairs);
+  }
+  return pairs;
+}
+
+static int append_edge(mlim_mesh* mesh, size_t capacity[2], int32_t lower, int32_t upper)
+{
+  const size_t e = mesh->edge_count;
+  if (mlim_reserve(&mesh->edges, &capacity[0], 2 * e + 2, sizeof *mesh->edges) ||
+      mlim_reserve(&mesh->edge_curves, &capacity[1], e + 1, sizeof *mesh->edge_curves))
+  {
+    return 1;
+  }
+  mesh->edges[2 * e] = lower;
+  mesh->edges[2 * e + 1] = upper;
+  mesh->edge_curves[e] = -1;
+  ++mesh->edge_count;
+  ++mesh->report.off_curve_edge_count;
+  return 0;
+}
+
+mlim_status mlim_quality_add_edges(mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context)
+{
+  const size_t curve_edges = mesh->edge_count;
+  size_t capacity[2] = { 2 * curve_edges, curve_edges };
+  int32_t* pairs = sort_curve_edges(mesh);
+  int has_failed = pairs == NULL;
+  for (size_t v = 0; v < mesh->vertex_count && !has_failed; ++v)
+  {
+    size_t end;
+    for (size_t first = edges->offsets[v]; first < edges->offsets[v + 1] && !has_failed;
+         first = end)
+    {
+      end = mlim_edges_run_end(edges, (int32_t)v, first);
+      const int32_t pair[2] = { (int32_t)v, edges->uses[first].upper };
+      if (end - first > 2 && (curve_edges == 0 || bsearch(pair, pairs, curve_edges,
+                                                    2 * sizeof *pairs, compare_pairs) == NULL))
+      {
+        has_failed = append_edge(mesh, capacity, pair[0], pair[1]);
+      }
+    }
+  }
+  mlim_release(pairs);
+  return has_failed ? mlim_fail_memory(context, "the mesh's curve edges") : MLIM_OK;
 }
 
 static double angle_between(const double u[3], const double v[3])

@@ -8,6 +8,10 @@
 mlim_status mlim_quality_find_patches(
   mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
 
+/* Appends the edges of three or more triangles that are not among the curve edges, and counts them:
+   what is finer than the smallest distance may leave a few. */
+mlim_status mlim_quality_add_edges(mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
+
 /* Fills the angles and ratios of the report. */
 void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges);
 

@@ -80,6 +80,7 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   *r = (mlim_refinement){ .options = options };
   mlim_queue_start(&r->queue, mlim_field_grid_of(oracle->field)->size);
   mlim_status status = mlim_complex_create(oracle, balls, context, &r->complex);
+  r->complex.vertex_limit = options->vertex_limit + MLIM_FAR_VERTICES;
   if (status == MLIM_OK)
   {
     status = mlim_ball_links_create(balls, context, &r->links);
@@ -168,7 +169,7 @@ static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_cont
     return status;
   }
   status = mlim_complex_commit(complex, context);
-  ++r->insertion_count;
+  r->insertion_count += status == MLIM_OK;
   for (size_t k = 0; k < complex->fresh_count && status == MLIM_OK; ++k)
   {
     if (enqueue(r, complex->fresh[k]))
@@ -200,12 +201,6 @@ static mlim_status work_batch(mlim_refinement* r, mlim_badness badness, mlim_con
           !mlim_criteria_may_insert(&r->complex, r->options, facet, badness)))
     {
       continue;
-    }
-    if (r->complex.vertex_count >= r->options->vertex_limit + MLIM_FAR_VERTICES)
-    {
-      return mlim_fail(context, MLIM_VERTEX_LIMIT,
-        "The mesh has %zu vertices, the limit; facets that are still bad are counted.",
-        r->options->vertex_limit);
     }
     status = insert_crossing(r, entry.record, context);
     if (status == MLIM_OK && r->insertion_count % REPORT_EVERY == 0)

@@ -49,7 +49,7 @@ mlim_status mlim_seeds_insert(mlim_complex* complex, const mlim_crossing* crossi
   if (status == MLIM_OK && power >= distance * distance)
   {
     status = mlim_complex_commit(complex, context);
-    ++*count;
+    *count += status == MLIM_OK;
   }
   return status;
 }

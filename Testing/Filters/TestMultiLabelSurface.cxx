@@ -300,7 +300,7 @@ void CheckOptions()
   std::ostringstream text;
   mesher->Print(text);
   for (const char* name : { "PointArraySelection", "BackgroundMode", "BackgroundValue",
-         "BackgroundArrayName", "TieBreaking", "UnseenLabels: Drop", "JunctionMergeTolerance",
+         "BackgroundArrayName", "TieBreaking", "UnseenLabels: Keep", "JunctionMergeTolerance",
          "FacetSize: 1", "FacetRadiusEdgeRatio", "FacetDistance", "VolumeTolerance: 0.02",
          "EdgeSize", "BallRadiusScale", "CrossingTolerance", "OracleMode", "CapBoundary",
          "OutputCurves", "MinimumComponentVoxels", "VertexLimit: 60", "OutputPointsPrecision" })

@@ -34,7 +34,7 @@ def mesh(
     junction_merge_tolerance: float = 0.0,
     oracle_mode: str = "exact",
     tie_breaking: str = "smooth",
-    unseen_labels: str = "drop",
+    unseen_labels: str = "keep",
     cap_boundary: bool = True,
     output_curves: bool = True,
     minimum_component_voxels: int | None = None,
@@ -53,7 +53,7 @@ def mesh(
         (probabilities).
     Lengths are in world units; 0: from the image's spacing. The class documents each option.
     oracle_mode: "exact" or "bisection". tie_breaking: "smooth" or "lowest_index".
-    unseen_labels: "drop" or "keep".
+    unseen_labels: "keep" or "drop".
     output_curves: False for vtkSurfaceNetsAtlas, which cannot use a surface with curves.
     balls: output of vtkMultiLabelCurveProtector for this image; None: made here.
     progress: True or False: a line on sys.stderr or none; None: a line if that is a terminal; a
@@ -81,7 +81,7 @@ def mesh(
     mesher.SetJunctionMergeTolerance(junction_merge_tolerance)
     mesher.SetOracleMode(_index("oracle_mode", oracle_mode, ("exact", "bisection")))
     mesher.SetTieBreaking(_index("tie_breaking", tie_breaking, ("smooth", "lowest_index")))
-    mesher.SetUnseenLabels(_index("unseen_labels", unseen_labels, ("drop", "keep")))
+    mesher.SetUnseenLabels(_index("unseen_labels", unseen_labels, ("keep", "drop")))
     mesher.SetCapBoundary(cap_boundary)
     mesher.SetOutputCurves(output_curves)
     if minimum_component_voxels is not None:
