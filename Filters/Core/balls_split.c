@@ -28,7 +28,7 @@ static const double ENOUGH_OVERLAP = 0.12;
 static const double CENTER_MARGIN = 0.06;
 
 /* Smallest radius of a split ball, of smallest_distance: as of the cover. */
-static const double FLOOR_SHARE = 0.25;
+static const double FLOOR_SHARE = 0.1;
 
 enum
 {

@@ -171,7 +171,12 @@ static mlim_status measure_distances(
   }
   else
   {
-    mlim_parallel_for(context, slices, distance_body, &job);
+    status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = slices,
+                                            .body = distance_body,
+                                            .job = &job,
+                                            .stage = MLIM_STAGE_CERTIFICATE,
+                                            .from = 0.4,
+                                            .to = 1 });
     for (size_t z = 0; z < slices; ++z)
     {
       mesh->certificate.grid_crossing_count += job.slices[z].count;

@@ -135,6 +135,11 @@ mlim_status mlim_components_find(
     goto done;
   }
   const int32_t made = scan(field, out->of_point, parent);
+  status = mlim_progress(context, MLIM_STAGE_SURFACE, 0);
+  if (status != MLIM_OK)
+  {
+    goto done;
+  }
   int32_t count = 0;
   /* A root is the lowest of its tree, so it has its number, stored as -1 - number, before any other
      member asks for it. */

@@ -9,12 +9,14 @@
    are three times as many vertices and angles of 8 degrees. */
 static const double QUALITY_GUARD = 1;
 
-/* For topology a point may come nearer: above 0 it is outside the ball. At 1/4 the new edge is not
-   below half the ball's radius. */
-static const double TOPOLOGY_GUARD = 0.25;
+/* For topology and distance a point may come nearer: above 0 it is outside the ball. At 1/4 the new
+   edge is not below half the ball's radius. */
+static const double NEAR_GUARD = 0.25;
 
 typedef struct triangle
 {
+  double middle[3];
+  double normal[3]; /* of length 1 */
   const mlim_vertex* vertex[3];
   double edge_squared[3];
   double height; /* of the crossing above the facet's plane */
@@ -51,11 +53,16 @@ static void measure(const mlim_complex* complex, const mlim_facet* facet, triang
     r[k] = s * u[k] + t * v[k];
   }
   out->radius_squared = mlim_dot(r, r);
-  double normal[3];
   double to[3];
-  mlim_cross(u, v, normal);
+  mlim_cross(u, v, out->normal);
   mlim_subtract(facet->crossing, a, to);
-  out->height = fabs(mlim_dot(to, normal)) / sqrt(mlim_dot(normal, normal));
+  const double length = sqrt(mlim_dot(out->normal, out->normal));
+  for (int k = 0; k < 3; ++k)
+  {
+    out->normal[k] /= length;
+    out->middle[k] = a[k] + (u[k] + v[k]) / 3;
+  }
+  out->height = fabs(mlim_dot(to, out->normal));
   out->edge_squared[0] = uu;
   out->edge_squared[1] = vv;
   out->edge_squared[2] = uu + vv - 2 * uv;
@@ -99,6 +106,25 @@ static double distance_bound(
   return options->facet_distance * mlim_min(low, high);
 }
 
+/* Whether the sheet does not pass within a distance of the triangle's middle, along its normal. The
+   height of the crossing says little about it when weights put the crossing aside. */
+static int is_off_sheet(
+  const mlim_complex* complex, const mlim_facet* facet, const triangle* t, double distance)
+{
+  int32_t labels[2];
+  for (int side = 0; side < 2; ++side)
+  {
+    double at[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      at[k] = t->middle[k] + (side == 0 ? -distance : distance) * t->normal[k];
+    }
+    labels[side] = mlim_field_label(complex->oracle.field, at);
+  }
+  return labels[0] == labels[1] &&
+         (labels[0] == facet->sheet.low || labels[0] == facet->sheet.high);
+}
+
 mlim_verdict mlim_criteria_judge(
   const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet)
 {
@@ -131,6 +157,12 @@ mlim_verdict mlim_criteria_judge(
       break;
     }
   }
+  if ((verdict.badness == MLIM_BAD_NONE || verdict.badness == MLIM_BAD_RATIO) && t.heaviest > 0 &&
+      is_off_sheet(complex, facet, &t, distance_bound(complex, options, &facet->sheet)))
+  {
+    verdict.badness = MLIM_BAD_DISTANCE;
+    verdict.excess = 1;
+  }
   return verdict;
 }
 
@@ -148,7 +180,8 @@ int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* op
     return 0;
   }
   const int is_topology = badness < MLIM_BAD_SIZE;
-  if (power < (is_topology ? TOPOLOGY_GUARD : QUALITY_GUARD) * t.heaviest)
+  const int is_near = is_topology || badness == MLIM_BAD_DISTANCE;
+  if (power < (is_near ? NEAR_GUARD : QUALITY_GUARD) * t.heaviest)
   {
     return 0;
   }

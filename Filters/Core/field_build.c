@@ -560,12 +560,22 @@ static mlim_status check_ids(
 static mlim_status build_index(build_job* job, mlim_context* context)
 {
   mlim_field* field = job->field;
-  mlim_parallel_for(context, (size_t)field->grid.dims[2], win_body, job);
+  mlim_status status =
+    mlim_parallel_stage(context, &(mlim_stage_work){ .count = (size_t)field->grid.dims[2],
+                                   .body = win_body,
+                                   .job = job,
+                                   .stage = MLIM_STAGE_FIELD,
+                                   .from = 0.1,
+                                   .to = 0.4 });
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
   if (job->has_failed)
   {
     return mlim_fail_memory(context, "the labels of the grid points");
   }
-  mlim_status status = mlim_plateau_find(job->samples, context, field->winners, &job->plateau);
+  status = mlim_plateau_find(job->samples, context, field->winners, &job->plateau);
   if (status != MLIM_OK)
   {
     return status;
@@ -575,7 +585,16 @@ static mlim_status build_index(build_job* job, mlim_context* context)
   {
     return status;
   }
-  mlim_parallel_for(context, field->layer_count, layer_body, job);
+  status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = field->layer_count,
+                                          .body = layer_body,
+                                          .job = job,
+                                          .stage = MLIM_STAGE_FIELD,
+                                          .from = 0.4,
+                                          .to = 0.9 });
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
   for (size_t z = 0; z < field->layer_count; ++z)
   {
     if (field->layers[z].has_failed)
@@ -593,7 +612,7 @@ static mlim_status build_index(build_job* job, mlim_context* context)
   {
     field->winners[p] = (uint16_t)(field->winners[p] & ~MLIM_TIED_FLAG);
   }
-  status = mlim_progress(context, MLIM_STAGE_FIELD, 0.8);
+  status = mlim_progress(context, MLIM_STAGE_FIELD, 0.9);
   return status != MLIM_OK ? status : measure_clearances(field, job->distance, context);
 }
 

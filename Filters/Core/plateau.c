@@ -18,7 +18,7 @@ enum
 
 /* A bonus is this part of a difference of indicators: next to a tied point the interface moves by
    less than this part of a cell. */
-static const double BONUS_PART = 0.0625;
+static const double BONUS_PART = 0.0009765625;
 
 /* The six neighbours of a tied label: another tied one, or a value that stands fast. */
 typedef struct stencil

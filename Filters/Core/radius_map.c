@@ -30,7 +30,7 @@ static const double SAMPLE_SHARE = 0.125;
 /* Smallest radius, of smallest_distance. A wedge of 4 degrees between two curves needs radii of 0.033
    times the distance from its junction, from about a spacing on: a larger floor gives such wedges
    up, a smaller one lets curves that all but touch make hundreds of tiny balls. */
-static const double FLOOR_SHARE = 0.25;
+static const double FLOOR_SHARE = 0.1;
 
 enum
 {

@@ -309,6 +309,10 @@ mlim_status mlim_refine_count_disks(
     status =
       mlim_disk_check(complex, &refinement->links, (int32_t)v, &refinement->star, context, &disk);
     *count += disk == MLIM_DISK_FAILS;
+    if (status == MLIM_OK && v % 4096 == 0)
+    {
+      status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, 0.2);
+    }
   }
   return status;
 }

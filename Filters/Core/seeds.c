@@ -100,6 +100,23 @@ static int is_known(const mlim_sheet* sheets, size_t count, const mlim_sheet* sh
   return 0;
 }
 
+/* Whether a point and its next ones along the axes have one label, as nearly all have. */
+static int is_inner(const mlim_field* field, const int32_t point[3])
+{
+  const int32_t* dims = mlim_field_grid_of(field)->dims;
+  const int32_t label = mlim_field_point_label(field, point);
+  for (int k = 0; k < 3; ++k)
+  {
+    int32_t next[3] = { point[0], point[1], point[2] };
+    ++next[k];
+    if (point[k] == 0 || next[k] == dims[k] || mlim_field_point_label(field, next) != label)
+    {
+      return 0;
+    }
+  }
+  return 1;
+}
+
 /* Label beyond a side of a grid point: the next point's, or the outside's. */
 static int32_t label_beyond(const mlim_field* field, const int32_t point[3], int side)
 {
@@ -163,6 +180,10 @@ static mlim_status seed_block(
     {
       for (p[0] = b->low[0]; p[0] < b->high[0]; ++p[0])
       {
+        if (is_inner(complex->oracle.field, p))
+        {
+          continue;
+        }
         const mlim_status status =
           seed_point(complex, p, distance, known, &known_count, MAX_SHEETS, context, count);
         if (status != MLIM_OK)
@@ -191,6 +212,11 @@ mlim_status mlim_seeds_on_sheets(
   int32_t at[3];
   for (at[2] = 0; at[2] < blocks[2]; ++at[2])
   {
+    const mlim_status going = mlim_progress(context, MLIM_STAGE_SURFACE, 0);
+    if (going != MLIM_OK)
+    {
+      return going;
+    }
     for (at[1] = 0; at[1] < blocks[1]; ++at[1])
     {
       for (at[0] = 0; at[0] < blocks[0]; ++at[0])

@@ -85,3 +85,33 @@ void mlim_parallel_for(mlim_context* context, size_t count, mlim_body body, void
   }
   body(job, 0, count);
 }
+
+typedef struct piece
+{
+  const mlim_stage_work* work;
+  size_t first;
+} piece;
+
+static void piece_body(void* data, size_t begin, size_t end)
+{
+  const piece* p = (const piece*)data;
+  p->work->body(p->work->job, p->first + begin, p->first + end);
+}
+
+mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* work)
+{
+  enum
+  {
+    PIECES = 32 /* each well below the tenth of a second in which a host wants to cancel */
+  };
+  const size_t step = work->count / PIECES + 1;
+  mlim_status status = MLIM_OK;
+  for (size_t first = 0; first < work->count && status == MLIM_OK; first += step)
+  {
+    const size_t count = work->count - first < step ? work->count - first : step;
+    mlim_parallel_for(context, count, piece_body, &(piece){ .work = work, .first = first });
+    const double share = (double)(first + count) / (double)work->count;
+    status = mlim_progress(context, work->stage, work->from + share * (work->to - work->from));
+  }
+  return status;
+}

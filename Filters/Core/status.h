@@ -20,4 +20,17 @@ mlim_status mlim_progress(mlim_context* context, mlim_stage stage, double fracti
 /* Runs body on [0, count), through the host's parallel-for if there is one. */
 void mlim_parallel_for(mlim_context* context, size_t count, mlim_body body, void* job);
 
+/* The same in pieces, with progress from `from` to `to` between them, so that the host can cancel.
+   `begin` and `end` of the body count from 0 over all pieces: the job needs no knowledge of them. */
+typedef struct mlim_stage_work
+{
+  size_t count;
+  mlim_body body;
+  void* job;
+  mlim_stage stage;
+  double from, to;
+} mlim_stage_work;
+
+mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* work);
+
 #endif

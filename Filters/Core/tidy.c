@@ -399,6 +399,10 @@ static mlim_status mend_disks(tidier* t, size_t* changed)
     {
       status = mend_from(t, (int32_t)v, changed);
     }
+    if (status == MLIM_OK && v % 1024 == 0)
+    {
+      status = mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, 0);
+    }
     if (status != MLIM_OK)
     {
       return status;

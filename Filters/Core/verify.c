@@ -168,8 +168,14 @@ static mlim_status look_for_far(
   }
   else
   {
-    mlim_parallel_for(context, slices, far_body, &job);
-    if (has_many_far(&job, slices))
+    const double done = v->refinement->progress;
+    status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = slices,
+                                            .body = far_body,
+                                            .job = &job,
+                                            .stage = MLIM_STAGE_SURFACE,
+                                            .from = done,
+                                            .to = done });
+    if (status == MLIM_OK && has_many_far(&job, slices))
     {
       status = insert_far(&job, slices, context, count);
     }
@@ -246,18 +252,20 @@ static mlim_status look_for_components(
   return status;
 }
 
-mlim_status mlim_verify_round(
-  const mlim_verification* verification, mlim_context* context, size_t* count)
+mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* context, size_t* count)
 {
   *count = 0;
   mlim_mesh mesh = { 0 };
   mlim_status status = look_for_components(verification, context, count);
-  if (status == MLIM_OK && verification->round < FAR_ROUNDS)
+  if (status == MLIM_OK && !verification->is_near && verification->round < FAR_ROUNDS)
   {
     status = mlim_mesh_read(&verification->refinement->complex, context, &mesh);
     if (status == MLIM_OK)
     {
-      status = look_for_far(verification, &mesh, context, count);
+      size_t far = 0;
+      status = look_for_far(verification, &mesh, context, &far);
+      verification->is_near = far == 0;
+      *count += far;
     }
     mlim_mesh_free(&mesh);
   }

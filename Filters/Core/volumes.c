@@ -86,8 +86,10 @@ mlim_status mlim_volumes_of_field(
   {
     return mlim_fail_memory(context, "the volumes of the labels");
   }
-  mlim_parallel_for(context, slices, volume_body,
-    &(volume_job){ .field = field, .label_count = labels, .volumes = sums });
+  volume_job job = { .field = field, .label_count = labels, .volumes = sums };
+  const mlim_status status = mlim_parallel_stage(
+    context, &(mlim_stage_work){
+               .count = slices, .body = volume_body, .job = &job, .stage = MLIM_STAGE_SURFACE });
   for (size_t z = 0; z < slices; ++z)
   {
     for (size_t l = 0; l < labels; ++l)
@@ -97,7 +99,7 @@ mlim_status mlim_volumes_of_field(
   }
   mlim_release(sums);
   count_voxels(field, voxels);
-  return MLIM_OK;
+  return status;
 }
 
 void mlim_volumes_of_complex(const mlim_complex* complex, double* volumes)
