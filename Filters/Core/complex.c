@@ -192,11 +192,15 @@ static int32_t new_record(mlim_complex* complex)
   return (int32_t)complex->facet_count++;
 }
 
-static int index_of_neighbor(const mlim_cell* cell, int32_t neighbor)
+/* Index in `cell` of the vertex that its neighbour `other` does not have: their common facet. Asked
+   for by the neighbours' ids it could be wrong, since the id of a dead cell may be in use again. */
+static int index_apart(const mlim_cell* cell, const mlim_cell* other)
 {
   for (int k = 0; k < 3; ++k)
   {
-    if (cell->neighbors[k] == neighbor)
+    const int32_t v = cell->vertices[k];
+    if (v != other->vertices[0] && v != other->vertices[1] && v != other->vertices[2] &&
+        v != other->vertices[3])
     {
       return k;
     }
@@ -278,7 +282,7 @@ static int record_facet(mlim_complex* complex, int32_t cell, int index)
   facet->is_alive = 1;
   facet->is_multiple = count > 1 || !differs;
   a->facets[index] = record;
-  b->facets[index_of_neighbor(b, cell)] = record;
+  b->facets[index_apart(b, a)] = record;
   complex->fresh[complex->fresh_count++] = record;
   return mark_facet_dirty(complex, cell, index);
 }
@@ -371,7 +375,8 @@ static int empty_zone(mlim_complex* complex)
         continue;
       }
       complex->facets[record].cell = other;
-      complex->facets[record].index = (unsigned char)index_of_neighbor(&complex->cells[other], id);
+      complex->facets[record].index =
+        (unsigned char)index_apart(&complex->cells[other], &complex->cells[id]);
     }
   }
   for (size_t c = 0; c < complex->zone.count; ++c)
@@ -379,21 +384,6 @@ static int empty_zone(mlim_complex* complex)
     complex->cells[complex->zone.cells[c]].vertices[0] = -1;
   }
   return failed;
-}
-
-/* Index in `cell` of the vertex that `other` does not have. */
-static int index_apart(const mlim_cell* cell, const mlim_cell* other)
-{
-  for (int k = 0; k < 3; ++k)
-  {
-    const int32_t v = cell->vertices[k];
-    if (v != other->vertices[0] && v != other->vertices[1] && v != other->vertices[2] &&
-        v != other->vertices[3])
-    {
-      return k;
-    }
-  }
-  return 3;
 }
 
 /* A facet between a new cell and one outside the zone: its record holds unless labels contradict. */
