@@ -43,7 +43,9 @@
  *   `CurveEdgeCount`, `JunctionCount`, `BallCount`, `InsertionCount`;
  *   `HiddenBallCount`: protecting balls left out because another one covers them;
  *   `RelabeledCellCount`: small cells whose label was changed to mend the topology below the
- *   smallest distance.
+ *   smallest distance; `RelabeledRatioCount`: triangles above the ratio bound that this brought to
+ *   light; `OffCurveEdgeCount`: lines with the CurveId -1, where three or more triangles meet off
+ *   the extracted curves; `LostCurveEdgeCount`: neighbours on a curve that no edge joins.
  * - Certificate: `CertifiedLabelCount`, `LostLabelCount`, `CertifiedComponentCount`,
  *   `LostComponentCount`, `DiskFailureCount`, `OpenEdgeCount`, `GridCrossingCount`,
  *   `FarCrossingCount`, `MaxCrossingDistance`, `MaxVolumeDifference`. The latter compares each

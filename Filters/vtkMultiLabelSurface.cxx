@@ -205,10 +205,12 @@ void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
   WriteCount("UnresolvedPatchCount", report.unresolved_patch_count, field);
   WriteCount("UnresolvedSizeCount", report.unresolved_size_count, field);
   WriteCount("UnresolvedDistanceCount", report.unresolved_distance_count, field);
+  WriteCount("RelabeledRatioCount", report.relabeled_ratio_count, field);
   WriteCount("UnresolvedRatioCount", report.unresolved_ratio_count, field);
   WriteCount("UnresolvedBallRatioCount", report.unresolved_ball_ratio_count, field);
   WriteCount("HiddenBallCount", report.hidden_ball_count, field);
   WriteCount("OffCurveEdgeCount", report.off_curve_edge_count, field);
+  WriteCount("LostCurveEdgeCount", report.lost_curve_edge_count, field);
   WriteCount("RelabeledCellCount", report.relabeled_cell_count, field);
   WriteValue("MaxRadiusEdgeRatio", report.max_radius_edge_ratio, field);
   WriteValue("MeanRadiusEdgeRatio", report.mean_radius_edge_ratio, field);

@@ -206,16 +206,20 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
   }
   if (status == MLIM_OK)
   {
-    status = mlim_quality_add_edges(out, &edges, b->context);
+    status = mlim_quality_settle_edges(out, &edges, b->context);
   }
   if (status == MLIM_OK)
   {
-    mlim_quality_measure(out, &edges);
+    mlim_quality_measure(out, &edges, b->options->facet_radius_edge_ratio);
     out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &edges);
     out->report.insertion_count = b->refinement.insertion_count;
     out->report.relabeled_cell_count = relabeled;
     out->report.hidden_ball_count = b->hidden_ball_count;
     count_unresolved(b, &out->report);
+    out->report.relabeled_ratio_count -=
+      out->report.unresolved_ratio_count < out->report.relabeled_ratio_count
+        ? out->report.unresolved_ratio_count
+        : out->report.relabeled_ratio_count;
     status =
       mlim_refine_count_disks(&b->refinement, b->context, &out->certificate.disk_failure_count);
   }

@@ -80,24 +80,28 @@ static size_t count_triangles(const mlim_complex* complex)
   return count;
 }
 
+/* Balls that no triangle has leave no trace: the mesh has no unused vertex. */
 static void read_curves(reader* r, const int32_t* vertex_of_ball)
 {
   const mlim_balls* balls = r->complex->balls;
   mlim_mesh* mesh = r->mesh;
   for (size_t e = 0; e < balls->edge_count; ++e)
   {
-    for (size_t k = 0; k < 2; ++k)
+    const int32_t a = r->vertex_of[vertex_of_ball[balls->edges[2 * e]]];
+    const int32_t b = r->vertex_of[vertex_of_ball[balls->edges[2 * e + 1]]];
+    if (a >= 0 && b >= 0)
     {
-      mesh->edges[2 * e + k] = take_vertex(r, vertex_of_ball[balls->edges[2 * e + k]]);
+      mesh->edges[2 * mesh->edge_count] = a;
+      mesh->edges[2 * mesh->edge_count + 1] = b;
+      mesh->edge_curves[mesh->edge_count++] = balls->edge_curves[e];
     }
-    mesh->edge_curves[e] = balls->edge_curves[e];
   }
-  mesh->edge_count = balls->edge_count;
   for (size_t b = 0; b < balls->ball_count; ++b)
   {
-    if (balls->ball_curves[b] < 0)
+    const int32_t vertex = r->vertex_of[vertex_of_ball[b]];
+    if (balls->ball_curves[b] < 0 && vertex >= 0)
     {
-      mesh->junctions[mesh->junction_count++] = take_vertex(r, vertex_of_ball[b]);
+      mesh->junctions[mesh->junction_count++] = vertex;
     }
   }
 }

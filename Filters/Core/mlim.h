@@ -258,16 +258,18 @@ extern "C"
     size_t unresolved_patch_count;    /* facets with a vertex of a foreign patch */
     size_t unresolved_size_count;     /* facets above facet_size, by the length floor or a ball */
     size_t unresolved_distance_count;
-    size_t unresolved_ratio_count;      /* without a ball vertex */
+    size_t unresolved_ratio_count; /* without a ball vertex */
+    size_t relabeled_ratio_count;  /* without a ball vertex, come to light by relabelled cells */
     size_t unresolved_ball_ratio_count; /* with a ball vertex: quality gives way near balls */
     size_t hidden_ball_count;           /* balls left out because another one covers them */
-    size_t off_curve_edge_count;        /* edges of three or more triangles on no extracted curve */
-    size_t relabeled_cell_count;        /* to mend topology below the smallest distance */
-    double max_radius_edge_ratio;       /* triangles without a ball vertex */
-    double mean_radius_edge_ratio;      /* all triangles */
-    double max_ball_radius_edge_ratio;  /* triangles with a ball vertex */
-    double min_dihedral_angle; /* degrees, between sheets round a curve edge; 180 without */
-    double min_angle;          /* degrees, of all triangles */
+    size_t lost_curve_edge_count;  /* neighbours on a curve between which the mesh has no edge */
+    size_t off_curve_edge_count;   /* edges of three or more triangles on no extracted curve */
+    size_t relabeled_cell_count;   /* to mend topology below the smallest distance */
+    double max_radius_edge_ratio;  /* triangles without a ball vertex */
+    double mean_radius_edge_ratio; /* all triangles */
+    double max_ball_radius_edge_ratio; /* triangles with a ball vertex */
+    double min_dihedral_angle;         /* degrees, between sheets round a curve edge; 180 without */
+    double min_angle;                  /* degrees, of all triangles */
   } mlim_report;
 
   /* Node types as materials users know them. */

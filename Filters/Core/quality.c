@@ -7,6 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* The loop and this file round a ratio differently, relative. */
+static const double ROUNDING = 1e-9;
+
 static const double DEGREES = 57.29577951308232; /* in a radian */
 
 static int32_t root_of(int32_t* parent, int32_t k)
@@ -116,8 +119,42 @@ static int append_edge(mlim_mesh* mesh, size_t capacity[2], int32_t lower, int32
   return 0;
 }
 
-mlim_status mlim_quality_add_edges(mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context)
+static int has_triangle(const mlim_edges* edges, int32_t a, int32_t b)
 {
+  const int32_t lower = a < b ? a : b;
+  const int32_t upper = a < b ? b : a;
+  for (size_t k = edges->offsets[lower]; k < edges->offsets[lower + 1]; ++k)
+  {
+    if (edges->uses[k].upper == upper)
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static void drop_edges(mlim_mesh* mesh, const mlim_edges* edges)
+{
+  size_t kept = 0;
+  for (size_t e = 0; e < mesh->edge_count; ++e)
+  {
+    const int32_t a = mesh->edges[2 * e];
+    const int32_t b = mesh->edges[2 * e + 1];
+    if (has_triangle(edges, a, b))
+    {
+      mesh->edges[2 * kept] = a;
+      mesh->edges[2 * kept + 1] = b;
+      mesh->edge_curves[kept++] = mesh->edge_curves[e];
+    }
+  }
+  mesh->report.lost_curve_edge_count = mesh->edge_count - kept;
+  mesh->edge_count = kept;
+}
+
+mlim_status mlim_quality_settle_edges(
+  mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context)
+{
+  drop_edges(mesh, edges);
   const size_t curve_edges = mesh->edge_count;
   size_t capacity[2] = { 2 * curve_edges, curve_edges };
   int32_t* pairs = sort_curve_edges(mesh);
@@ -148,7 +185,7 @@ static double angle_between(const double u[3], const double v[3])
   return DEGREES * atan2(sqrt(mlim_dot(n, n)), mlim_dot(u, v));
 }
 
-static void measure_triangle(mlim_mesh* mesh, size_t t, double* ratio_sum)
+static void measure_triangle(mlim_mesh* mesh, size_t t, double bound, double* ratio_sum)
 {
   mlim_report* report = &mesh->report;
   const int32_t* id = mesh->triangles + 3 * t;
@@ -182,6 +219,7 @@ static void measure_triangle(mlim_mesh* mesh, size_t t, double* ratio_sum)
   const double ratio = product / (2 * sqrt(mlim_dot(n, n))) / shortest;
   double* worst = has_ball ? &report->max_ball_radius_edge_ratio : &report->max_radius_edge_ratio;
   *worst = mlim_max(*worst, ratio);
+  report->relabeled_ratio_count += !has_ball && ratio > bound * (1 + ROUNDING);
   *ratio_sum += ratio;
 }
 
@@ -220,7 +258,7 @@ static double smallest_dihedral(
   return least;
 }
 
-void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges)
+void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound)
 {
   mlim_report* report = &mesh->report;
   report->min_angle = mesh->triangle_count > 0 ? 180 : 0;
@@ -230,7 +268,7 @@ void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges)
   double ratio_sum = 0;
   for (size_t t = 0; t < mesh->triangle_count; ++t)
   {
-    measure_triangle(mesh, t, &ratio_sum);
+    measure_triangle(mesh, t, bound, &ratio_sum);
   }
   report->mean_radius_edge_ratio =
     mesh->triangle_count > 0 ? ratio_sum / (double)mesh->triangle_count : 0;

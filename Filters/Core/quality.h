@@ -8,12 +8,14 @@
 mlim_status mlim_quality_find_patches(
   mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
 
-/* Appends the edges of three or more triangles that are not among the curve edges, and counts them:
-   what is finer than the smallest distance may leave a few. */
-mlim_status mlim_quality_add_edges(mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
+/* Drops curve edges that no triangle has, and appends the edges of three or more triangles that are not
+   among them, and counts both: what is finer than the smallest distance may leave a few. */
+mlim_status mlim_quality_settle_edges(
+  mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
 
-/* Fills the angles and ratios of the report. */
-void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges);
+/* Fills the angles and ratios of the report. relabeled_ratio_count receives all triangles without a
+   ball vertex above the bound. */
+void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound);
 
 /* Number of edges round which the boundary of some region does not close. */
 size_t mlim_quality_count_open_edges(const mlim_mesh* mesh, const mlim_edges* edges);

@@ -12,7 +12,8 @@ enum
   MAX_SWEEPS = 12, /* over all cells or vertices; each mends what the one before made mendable */
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
-  MAX_STEPS = 256  /* vertices that one failed vertex may lead to */
+  SHAPE_SWEEPS = 2,
+  MAX_STEPS = 256 /* vertices that one failed vertex may lead to */
 };
 
 /* ---- strays: facets with a vertex that is not on their sheet ---- */
@@ -257,13 +258,16 @@ static void gather_vertices(tidier* t)
   }
 }
 
-/* Failed disks weigh more than strays: the latter only lie a little off their sheet. */
+/* A failed disk weighs more than bad triangles, these more than strays: the latter only lie a little
+   off their sheet. */
+enum
+{
+  DISK_COST = 16,
+  SHAPE_COST = 4
+};
+
 static long cost(tidier* t)
 {
-  enum
-  {
-    DISK_COST = 8
-  };
   long sum = 0;
   for (size_t k = 0; k < t->vertex_count; ++k)
   {
@@ -273,7 +277,7 @@ static long cost(tidier* t)
   {
     const int32_t id = t->part[p];
     sum += cell_strays(&t->refinement->complex, id, t->refinement->complex.cells[id].label);
-    sum += cell_misshapen(t->refinement, id);
+    sum += SHAPE_COST * cell_misshapen(t->refinement, id);
   }
   return sum;
 }
@@ -411,6 +415,30 @@ static mlim_status mend_disks(tidier* t, size_t* changed)
   return MLIM_OK;
 }
 
+/* Bad triangles that the changes above have brought to light: another label for one of the two cells
+   may hide them again. */
+static mlim_status mend_shapes(tidier* t, size_t* changed)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    const mlim_cell* cell = &complex->cells[c];
+    if (cell->vertices[0] < 0 || is_frozen(complex, cell) ||
+        cell_misshapen(t->refinement, (int32_t)c) == 0)
+    {
+      continue;
+    }
+    t->part[0] = (int32_t)c;
+    t->part_count = 1;
+    *changed += mend_part(t);
+    if (t->status != MLIM_OK)
+    {
+      return t->status;
+    }
+  }
+  return MLIM_OK;
+}
+
 mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_context* context, size_t* count)
 {
   *count = mend_strays(&refinement->complex);
@@ -422,7 +450,11 @@ mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_context* context, si
   t->refinement = refinement;
   t->context = context;
   size_t changed = 0;
-  const mlim_status status = mend_disks(t, &changed);
+  mlim_status status = mend_disks(t, &changed);
+  for (int sweep = 0; sweep < SHAPE_SWEEPS && status == MLIM_OK; ++sweep)
+  {
+    status = mend_shapes(t, &changed);
+  }
   *count += changed;
   mlim_star_free(&t->star);
   mlim_star_free(&t->check);

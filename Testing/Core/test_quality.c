@@ -122,7 +122,7 @@ static void measure(hand_mesh* h)
   mlim_edges edges;
   CHECK(mlim_edges_create(&h->mesh, NULL, &edges) == MLIM_OK);
   CHECK(mlim_quality_find_patches(&h->mesh, &edges, NULL) == MLIM_OK);
-  mlim_quality_measure(&h->mesh, &edges);
+  mlim_quality_measure(&h->mesh, &edges, 1);
   mlim_edges_free(&edges);
 }
 

@@ -16,6 +16,8 @@ _COUNTS = (
     ("protecting balls", "BallCount"),
     ("balls covered by others", "HiddenBallCount"),
     ("cells with a mended label", "RelabeledCellCount"),
+    ("junction edges off the curves", "OffCurveEdgeCount"),
+    ("curve edges lost", "LostCurveEdgeCount"),
 )
 _LENGTHS = (
     ("facet size", "FacetSize"),
@@ -35,6 +37,7 @@ _UNDONE = (
     ("size", "UnresolvedSizeCount"),
     ("distance", "UnresolvedDistanceCount"),
     ("ratio", "UnresolvedRatioCount"),
+    ("ratio at mended labels", "RelabeledRatioCount"),
     ("ratio beside curves", "UnresolvedBallRatioCount"),
 )
 _TIMES = (
