@@ -7,6 +7,9 @@
    (1.5, 2, 0) and its circumradius 2.5 = hypot(3, 4) / 2; the shortest edge is 3. */
 static const double POINTS[5][3] = { { 0, 0, 0 }, { 3, 0, 0 }, { 0, 4, 0 }, { 1, 1, 3 },
   { 1, 1, -3 } };
+/* All are moved by this: 20 below the triangle's middle lies the sphere's, 20 above nothing. */
+static const double SHIFT[3] = { 8.5, 8, 30 };
+static const double REACH = 20;
 static const double RADIUS = 2.5;
 static const double SHORTEST = 3;
 static const double HEIGHT = 0.5; /* of the crossing above the circumcentre */
@@ -32,7 +35,7 @@ static void set_up(five* f, const mlim_field* field)
 {
   *f = (five){ .distance_shares = { 1, 1 },
     .options = { .facet_size = 100,
-      .facet_distance = 100,
+      .facet_distance = REACH,
       .facet_radius_edge_ratio = 100,
       .smallest_distance = 1e-3 },
     .balls = { .ball_count = 2,
@@ -43,7 +46,10 @@ static void set_up(five* f, const mlim_field* field)
     f->vertices[v] = (mlim_vertex){
       .ball = -1, .kind = MLIM_VERTEX_SURFACE, .sheet = { .low = 0, .high = 1, .face = -1 }
     };
-    memcpy(f->vertices[v].point, POINTS[v], sizeof POINTS[v]);
+    for (int k = 0; k < 3; ++k)
+    {
+      f->vertices[v].point[k] = POINTS[v][k] + SHIFT[k];
+    }
   }
   f->cells[0] = (mlim_cell){
     .vertices = { 0, 1, 2, 3 }, .neighbors = { -1, -1, -1, 1 }, .facets = { 0, 0, 0, 1 }
@@ -51,7 +57,7 @@ static void set_up(five* f, const mlim_field* field)
   f->cells[1] = (mlim_cell){
     .vertices = { 0, 2, 1, 4 }, .neighbors = { -1, -1, -1, 0 }, .facets = { 0, 0, 0, 1 }, .label = 1
   };
-  f->facet = (mlim_facet){ .crossing = { 1.5, 2, HEIGHT },
+  f->facet = (mlim_facet){ .crossing = { 1.5 + SHIFT[0], 2 + SHIFT[1], HEIGHT + SHIFT[2] },
     .sheet = { .low = 0, .high = 1, .face = -1 },
     .cell = 0,
     .index = 3,
@@ -118,7 +124,7 @@ static void test_distance(const mlim_field* field)
   {
     five f;
     set_up(&f, field);
-    f.facet.crossing[0] = 0.2;
+    f.facet.crossing[0] = 0.2 + SHIFT[0];
     f.options.facet_distance = HEIGHT * (1 + STEP);
     CHECK(judge(&f) == MLIM_BAD_NONE);
     f.distance_shares[label] = 0.5;
@@ -173,6 +179,19 @@ static void test_sheets(const mlim_field* field)
   CHECK(judge(&f) == MLIM_BAD_SHEET);
 }
 
+/* Beside a ball the sheet has to pass near the triangle's middle, not only through its crossing. */
+static void test_off_sheet(const mlim_field* field)
+{
+  five f;
+  set_up(&f, field);
+  f.options.facet_distance = 1; /* 1 below and 1 above the middle there is nothing but label 0 */
+  CHECK(judge(&f) == MLIM_BAD_NONE);
+  put_ball(&f, 0, 0, 0.5);
+  CHECK(judge(&f) == MLIM_BAD_DISTANCE);
+  f.options.facet_distance = REACH;
+  CHECK(judge(&f) == MLIM_BAD_NONE);
+}
+
 static int may_insert(const five* f, mlim_badness badness)
 {
   return mlim_criteria_may_insert(&f->complex, &f->options, &f->facet, badness);
@@ -193,7 +212,7 @@ static void test_floor(const mlim_field* field)
 }
 
 /* The power distance to a ball, d^2 - r^2, against the ball's own r^2: a quarter of it will do for
-   topology, all of it for quality. The other two vertices are equally far in power. */
+   topology and distance, all of it for size. The other two vertices are equally far in power. */
 static void test_guards(const mlim_field* field)
 {
   const struct
@@ -201,7 +220,7 @@ static void test_guards(const mlim_field* field)
     mlim_badness badness;
     double guard;
   } rows[] = { { MLIM_BAD_CROSSINGS, 0.25 }, { MLIM_BAD_SHEET, 0.25 }, { MLIM_BAD_DISK, 0.25 },
-    { MLIM_BAD_SIZE, 1 }, { MLIM_BAD_DISTANCE, 1 } };
+    { MLIM_BAD_SIZE, 1 }, { MLIM_BAD_DISTANCE, 0.25 } };
   const double d_squared = RADIUS * RADIUS + HEIGHT * HEIGHT;
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
   {
@@ -231,7 +250,7 @@ static void test_shape_near_ball(const mlim_field* field)
   }
   CHECK(may_insert(&f, MLIM_BAD_SIZE));
   CHECK(!may_insert(&f, MLIM_BAD_RATIO));
-  f.facet.crossing[2] = 2; /* 10.25 squared */
+  f.facet.crossing[2] = 2 + SHIFT[2]; /* 10.25 squared */
   CHECK(may_insert(&f, MLIM_BAD_RATIO));
 }
 
@@ -246,6 +265,7 @@ int main(void)
   test_distance(field);
   test_order(field);
   test_sheets(field);
+  test_off_sheet(field);
   test_floor(field);
   test_guards(field);
   test_shape_near_ball(field);
