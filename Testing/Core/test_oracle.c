@@ -87,7 +87,8 @@ static void test_segment(const mlim_field* field, const double a[3], const doubl
     }
     double margin;
     const int32_t label = label_at(a, b, t, &margin);
-    const int is_near = (next < count && at[next] - t < 1e-6) || (next > 0 && t - at[next - 1] < 1e-6);
+    const int is_near =
+      (next < count && at[next] - t < 1e-6) || (next > 0 && t - at[next - 1] < 1e-6);
     if (margin > CLEAR && !is_near && count > 0)
     {
       CHECK(label == (next < count ? crossing[next].from : crossing[next - 1].to));
