@@ -26,6 +26,8 @@ typedef struct build
   mlim_balls balls; /* own: after pruning and splitting */
   const mlim_balls* used_balls;
   size_t hidden_ball_count;
+  size_t relabeled_cell_count;
+  mlim_edges edges; /* of the mesh */
 } build;
 
 static mlim_status check_balls(
@@ -182,56 +184,75 @@ static void count_unresolved(const build* b, mlim_report* report)
   }
 }
 
+static mlim_status tidy(build* b, mlim_mesh* out)
+{
+  (void)out;
+  return mlim_tidy_run(&b->refinement, b->context, &b->relabeled_cell_count);
+}
+
+static mlim_status read(build* b, mlim_mesh* out)
+{
+  return mlim_mesh_read(&b->refinement.complex, b->context, out);
+}
+
+static mlim_status find_edges(build* b, mlim_mesh* out)
+{
+  return mlim_edges_create(out, b->context, &b->edges);
+}
+
+static mlim_status find_patches(build* b, mlim_mesh* out)
+{
+  return mlim_quality_find_patches(out, &b->edges, b->context);
+}
+
+static mlim_status settle_edges(build* b, mlim_mesh* out)
+{
+  return mlim_quality_settle_edges(out, &b->edges, b->context);
+}
+
+static mlim_status measure_quality(build* b, mlim_mesh* out)
+{
+  mlim_report* report = &out->report;
+  mlim_quality_measure(out, &b->edges, b->options->facet_radius_edge_ratio);
+  out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &b->edges);
+  report->insertion_count = b->refinement.insertion_count;
+  report->relabeled_cell_count = b->relabeled_cell_count;
+  report->hidden_ball_count = b->hidden_ball_count;
+  count_unresolved(b, report);
+  const size_t known = report->unresolved_ratio_count;
+  report->relabeled_ratio_count -=
+    known < report->relabeled_ratio_count ? known : report->relabeled_ratio_count;
+  return MLIM_OK;
+}
+
+static mlim_status count_disks(build* b, mlim_mesh* out)
+{
+  return mlim_refine_count_disks(
+    &b->refinement, MLIM_CERTIFY_FROM, b->context, &out->certificate.disk_failure_count);
+}
+
+static mlim_status certify(build* b, mlim_mesh* out)
+{
+  const mlim_certificate_input input = { .complex = &b->refinement.complex,
+    .components = &b->components,
+    .options = b->options,
+    .volumes = b->volumes,
+    .voxels = b->voxels };
+  return mlim_certificate_measure(&input, b->context, out);
+}
+
 static mlim_status read_and_measure(build* b, mlim_mesh* out)
 {
-  mlim_status status = mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, 0);
-  if (status != MLIM_OK)
+  /* Certifying reports the rest of the stage itself. */
+  mlim_status (*const steps[])(build*, mlim_mesh*) = { tidy, read, find_edges, find_patches,
+    settle_edges, measure_quality, count_disks, certify };
+  const size_t count = sizeof steps / sizeof *steps;
+  mlim_status status = MLIM_OK;
+  for (size_t k = 0; k < count && status == MLIM_OK; ++k)
   {
-    return status;
-  }
-  mlim_edges edges = { 0 };
-  size_t relabeled = 0;
-  status = mlim_tidy_run(&b->refinement, b->context, &relabeled);
-  if (status == MLIM_OK)
-  {
-    status = mlim_mesh_read(&b->refinement.complex, b->context, out);
-  }
-  if (status == MLIM_OK)
-  {
-    status = mlim_edges_create(out, b->context, &edges);
-  }
-  if (status == MLIM_OK)
-  {
-    status = mlim_quality_find_patches(out, &edges, b->context);
-  }
-  if (status == MLIM_OK)
-  {
-    status = mlim_quality_settle_edges(out, &edges, b->context);
-  }
-  if (status == MLIM_OK)
-  {
-    mlim_quality_measure(out, &edges, b->options->facet_radius_edge_ratio);
-    out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &edges);
-    out->report.insertion_count = b->refinement.insertion_count;
-    out->report.relabeled_cell_count = relabeled;
-    out->report.hidden_ball_count = b->hidden_ball_count;
-    count_unresolved(b, &out->report);
-    out->report.relabeled_ratio_count -=
-      out->report.unresolved_ratio_count < out->report.relabeled_ratio_count
-        ? out->report.unresolved_ratio_count
-        : out->report.relabeled_ratio_count;
-    status =
-      mlim_refine_count_disks(&b->refinement, b->context, &out->certificate.disk_failure_count);
-  }
-  mlim_edges_free(&edges);
-  if (status == MLIM_OK)
-  {
-    const mlim_certificate_input input = { .complex = &b->refinement.complex,
-      .components = &b->components,
-      .options = b->options,
-      .volumes = b->volumes,
-      .voxels = b->voxels };
-    status = mlim_certificate_measure(&input, b->context, out);
+    const double done = MLIM_CERTIFY_FROM * (double)k / (double)count;
+    status = mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, done);
+    status = status == MLIM_OK ? steps[k](b, out) : status;
   }
   return status == MLIM_OK ? mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, 1) : status;
 }
@@ -292,6 +313,7 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
   }
   mlim_refine_free(&b.refinement);
   mlim_balls_free(&b.balls);
+  mlim_edges_free(&b.edges);
   mlim_components_free(&b.components);
   mlim_release(b.volumes);
   mlim_release(b.voxels);

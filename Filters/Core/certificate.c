@@ -175,7 +175,7 @@ static mlim_status measure_distances(
                                             .body = distance_body,
                                             .job = &job,
                                             .stage = MLIM_STAGE_CERTIFICATE,
-                                            .from = 0.4,
+                                            .from = MLIM_CERTIFY_FROM,
                                             .to = 1 });
     for (size_t z = 0; z < slices; ++z)
     {
@@ -224,7 +224,7 @@ mlim_status mlim_certificate_measure(
   count_labels(
     components, options->min_component_voxels, is_found, mesh, state, &mesh->certificate);
   compare_volumes(complex->oracle.field, input->volumes, input->voxels, mesh);
-  status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, 0.4);
+  status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, MLIM_CERTIFY_FROM);
   if (status == MLIM_OK)
   {
     status = measure_distances(complex, options, context, mesh);

@@ -20,6 +20,9 @@ typedef struct mlim_certificate_input
   const size_t* voxels;  /* a label */
 } mlim_certificate_input;
 
+/* The stage's share that is done when the certificate begins. */
+#define MLIM_CERTIFY_FROM 0.4
+
 /* Fills labels, components, distances and volumes of mesh->certificate. */
 mlim_status mlim_certificate_measure(
   const mlim_certificate_input* input, mlim_context* context, mlim_mesh* mesh);

@@ -10,7 +10,8 @@
 
 enum
 {
-  REPORT_EVERY = 256 /* insertions between two looks at the host: about 5 ms */
+  REPORT_EVERY = 256, /* insertions between two looks at the host: about 5 ms */
+  JUDGE_EVERY = 65536 /* facets judged between two looks: about 20 ms */
 };
 
 /* ---- start ---- */
@@ -142,6 +143,11 @@ static mlim_status enqueue_all(mlim_refinement* r, mlim_context* context)
     if (enqueue(r, (int32_t)record))
     {
       return mlim_fail_memory(context, "the queue of facets");
+    }
+    const mlim_status status = record % JUDGE_EVERY == 0 ? mlim_refine_report(r, context) : MLIM_OK;
+    if (status != MLIM_OK)
+    {
+      return status;
     }
   }
   return MLIM_OK;
@@ -298,7 +304,7 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
 /* ---- what is left ---- */
 
 mlim_status mlim_refine_count_disks(
-  mlim_refinement* refinement, mlim_context* context, size_t* count)
+  mlim_refinement* refinement, double done, mlim_context* context, size_t* count)
 {
   mlim_complex* complex = &refinement->complex;
   *count = 0;
@@ -311,7 +317,7 @@ mlim_status mlim_refine_count_disks(
     *count += disk == MLIM_DISK_FAILS;
     if (status == MLIM_OK && v % 4096 == 0)
     {
-      status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, 0.2);
+      status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, done);
     }
   }
   return status;

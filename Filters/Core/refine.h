@@ -40,8 +40,9 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
 /* Tells the host how far refinement is. */
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context);
 
-/* Number of vertices that fail the disk condition. */
+/* Number of vertices that fail the disk condition. `done` is reported as the share of the
+   certificate's stage. */
 mlim_status mlim_refine_count_disks(
-  mlim_refinement* refinement, mlim_context* context, size_t* count);
+  mlim_refinement* refinement, double done, mlim_context* context, size_t* count);
 
 #endif

@@ -148,7 +148,12 @@ static mlim_status look_for_far(
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
   const size_t slices = (size_t)grid->dims[2];
   mlim_nearest nearest;
-  mlim_status status = mlim_nearest_create(
+  mlim_status status = mlim_refine_report(v->refinement, context);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  status = mlim_nearest_create(
     mesh, grid->size, mlim_max(options->facet_size, grid->unit), context, &nearest);
   if (status != MLIM_OK)
   {

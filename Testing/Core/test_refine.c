@@ -46,7 +46,7 @@ static void test_fixed_point(int kind)
   CHECK(mlim_refine_run(&refinement, MLIM_GOAL_QUALITY, NULL) == MLIM_OK);
   CHECK(mlim_refine_run(&refinement, MLIM_GOAL_TOPOLOGY, NULL) == MLIM_OK);
   CHECK_COUNT(refinement.complex.vertex_count, fine);
-  CHECK(mlim_refine_count_disks(&refinement, NULL, &count) == MLIM_OK);
+  CHECK(mlim_refine_count_disks(&refinement, 0, NULL, &count) == MLIM_OK);
   CHECK_COUNT(count, 0);
   mlim_refine_free(&refinement);
   mlim_components_free(&components);
