@@ -20,7 +20,7 @@ order='
 0 base          mlim vector cubic tie
 1 services      memory status
 2 pieces        samples label_sets point_grid
-3 field         plateau field_index clearance field options components
+3 field         plateau field clearance field_build options components
 4 oracle        oracle crossings
 4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         radius_map span balls
