@@ -29,6 +29,7 @@ static int32_t scan(const mlim_field* field, int32_t* of_point, int32_t* parent)
   const int32_t* dims = mlim_field_grid_of(field)->dims;
   const int64_t nx = dims[0];
   const int64_t ny = dims[1];
+  const uint16_t* labels = mlim_field_point_labels(field);
   int32_t made = 0;
   int64_t at = 0;
   for (int32_t z = 0; z < dims[2]; ++z)
@@ -38,7 +39,7 @@ static int32_t scan(const mlim_field* field, int32_t* of_point, int32_t* parent)
       int32_t before = -1;
       for (int32_t x = 0; x < dims[0]; ++x, ++at)
       {
-        const int32_t label = mlim_field_point_label(field, (const int32_t[3]){ x, y, z });
+        const int32_t label = labels[at];
         const int is_run = x > 0 && label == before;
         int32_t mine = is_run ? of_point[at - 1] : -1;
         before = label;
@@ -53,7 +54,7 @@ static int32_t scan(const mlim_field* field, int32_t* of_point, int32_t* parent)
           }
           for (int32_t ox = is_run ? x + 1 : x > 0 ? x - 1 : x; ox <= x + 1 && ox < dims[0]; ++ox)
           {
-            if (mlim_field_point_label(field, (const int32_t[3]){ ox, oy, oz }) != label)
+            if (labels[ox + nx * (oy + ny * (int64_t)oz)] != label)
             {
               continue;
             }

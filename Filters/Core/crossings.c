@@ -30,17 +30,16 @@ void mlim_crossings_of_slice(
   const mlim_oracle* oracle, int32_t z, mlim_crossing_visit visit, void* user)
 {
   const int32_t* dims = mlim_field_grid_of(oracle->field)->dims;
+  const size_t steps[3] = { 1, (size_t)dims[0], (size_t)dims[0] * (size_t)dims[1] };
+  const uint16_t* label = mlim_field_point_labels(oracle->field) + steps[2] * (size_t)z;
   int32_t p[3] = { 0, 0, z };
   for (p[1] = 0; p[1] < dims[1]; ++p[1])
   {
-    for (p[0] = 0; p[0] < dims[0]; ++p[0])
+    for (p[0] = 0; p[0] < dims[0]; ++p[0], ++label)
     {
-      const int32_t label = mlim_field_point_label(oracle->field, p);
       for (int axis = 0; axis < 3; ++axis)
       {
-        int32_t q[3] = { p[0], p[1], p[2] };
-        ++q[axis];
-        if (q[axis] < dims[axis] && mlim_field_point_label(oracle->field, q) != label)
+        if (p[axis] + 1 < dims[axis] && label[steps[axis]] != *label)
         {
           visit_edge(oracle, p, axis, visit, user);
         }

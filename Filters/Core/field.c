@@ -48,6 +48,11 @@ size_t mlim_field_max_candidates(const mlim_field* field)
   return field->max_candidates < 2 ? 2 : field->max_candidates;
 }
 
+const uint16_t* mlim_field_point_labels(const mlim_field* field)
+{
+  return field->winners;
+}
+
 int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3])
 {
   return field->winners[(size_t)point[0] +

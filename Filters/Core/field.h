@@ -43,8 +43,9 @@ typedef struct mlim_cell_buffer
 mlim_candidates mlim_field_cell(
   const mlim_field* field, const int32_t cell[3], const mlim_cell_buffer* buffer);
 
-/* Label of a grid point (the best one there). */
+/* Label of a grid point (the best one there), and the labels of all of them, x fastest; borrowed. */
 int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3]);
+const uint16_t* mlim_field_point_labels(const mlim_field* field);
 
 /* mlim_field_label, and a number of cells within which (Chebyshev, from the point's own cell, which
    counts as 1) every cell is uniform with this label and inside the box; 0 in a mixed cell. */

@@ -87,29 +87,50 @@ typedef struct block
   int32_t high[3]; /* past the last grid point */
 } block;
 
-static int is_known(const mlim_sheet* sheets, size_t count, const mlim_sheet* sheet)
+enum
 {
-  for (size_t k = 0; k < count; ++k)
+  MAX_SHEETS = 32, /* of one block; further ones wait for refinement */
+  MAX_TRIES =
+    8 /* crossings of a sheet that are too near to a vertex before the block gives it up */
+};
+
+/* The sheets met in one block. */
+typedef struct sheet_list
+{
+  mlim_sheet sheets[MAX_SHEETS];
+  int tries[MAX_SHEETS]; /* MAX_TRIES: seeded or given up */
+  size_t count;
+} sheet_list;
+
+/* The sheet's place in the list, appended if it is new; MAX_SHEETS when the list is full. */
+static size_t place_of(sheet_list* list, const mlim_sheet* sheet)
+{
+  size_t k = 0;
+  while (
+    k < list->count && (list->sheets[k].low != sheet->low || list->sheets[k].high != sheet->high ||
+                         list->sheets[k].face != sheet->face))
   {
-    if (sheets[k].low == sheet->low && sheets[k].high == sheet->high &&
-        sheets[k].face == sheet->face)
-    {
-      return 1;
-    }
+    ++k;
   }
-  return 0;
+  if (k == list->count && k < MAX_SHEETS)
+  {
+    list->sheets[k] = *sheet;
+    list->tries[k] = 0;
+    ++list->count;
+  }
+  return k;
 }
 
 /* Whether a point and its next ones along the axes have one label, as nearly all have. */
 static int is_inner(const mlim_field* field, const int32_t point[3])
 {
   const int32_t* dims = mlim_field_grid_of(field)->dims;
-  const int32_t label = mlim_field_point_label(field, point);
+  const size_t steps[3] = { 1, (size_t)dims[0], (size_t)dims[0] * (size_t)dims[1] };
+  const uint16_t* label = mlim_field_point_labels(field) + (size_t)point[0] +
+                          steps[1] * (size_t)point[1] + steps[2] * (size_t)point[2];
   for (int k = 0; k < 3; ++k)
   {
-    int32_t next[3] = { point[0], point[1], point[2] };
-    ++next[k];
-    if (point[k] == 0 || next[k] == dims[k] || mlim_field_point_label(field, next) != label)
+    if (point[k] == 0 || point[k] + 1 == dims[k] || label[steps[k]] != *label)
     {
       return 0;
     }
@@ -117,36 +138,37 @@ static int is_inner(const mlim_field* field, const int32_t point[3])
   return 1;
 }
 
-/* Label beyond a side of a grid point: the next point's, or the outside's. */
-static int32_t label_beyond(const mlim_field* field, const int32_t point[3], int side)
+/* The sheet between a grid point and what lies beyond one of its sides: the next point, or the
+   outside. Equal labels when there is none. */
+static mlim_sheet sheet_beyond(const mlim_field* field, const int32_t point[3], int side)
 {
   const mlim_field_grid* grid = mlim_field_grid_of(field);
+  const int32_t label = mlim_field_point_label(field, point);
   int32_t next[3] = { point[0], point[1], point[2] };
   next[side >> 1] += side & 1 ? 1 : -1;
-  return next[side >> 1] < 0 || next[side >> 1] >= grid->dims[side >> 1]
-           ? mlim_field_outside_label(field)
-           : mlim_field_point_label(field, next);
+  const int is_out = next[side >> 1] < 0 || next[side >> 1] >= grid->dims[side >> 1];
+  const int32_t other =
+    is_out ? mlim_field_outside_label(field) : mlim_field_point_label(field, next);
+  return (mlim_sheet){ .low = label < other ? label : other,
+    .high = label < other ? other : label,
+    .face = is_out ? side : -1 };
 }
 
 static mlim_status seed_point(mlim_complex* complex, const int32_t point[3], double distance,
-  mlim_sheet* known, size_t* known_count, size_t known_capacity, mlim_context* context,
-  size_t* count)
+  sheet_list* list, mlim_context* context, size_t* count)
 {
-  const mlim_field* field = complex->oracle.field;
-  const int32_t label = mlim_field_point_label(field, point);
   for (int side = 0; side < 6; ++side)
   {
     mlim_crossing crossing;
-    const int is_last = side & 1 || point[side >> 1] == 0;
-    if (!is_last || label_beyond(field, point, side) == label ||
-        !cross_grid_edge(complex, point, side, &crossing))
+    const mlim_sheet sheet = sheet_beyond(complex->oracle.field, point, side);
+    const int is_taken = !(side & 1) && point[side >> 1] > 0; /* the point before has looked */
+    if (is_taken || sheet.low == sheet.high)
     {
       continue;
     }
-    const mlim_sheet sheet = { .low = crossing.from < crossing.to ? crossing.from : crossing.to,
-      .high = crossing.from < crossing.to ? crossing.to : crossing.from,
-      .face = crossing.face };
-    if (*known_count == known_capacity || is_known(known, *known_count, &sheet))
+    const size_t place = place_of(list, &sheet);
+    if (place == MAX_SHEETS || list->tries[place] == MAX_TRIES ||
+        !cross_grid_edge(complex, point, side, &crossing))
     {
       continue;
     }
@@ -156,10 +178,7 @@ static mlim_status seed_point(mlim_complex* complex, const int32_t point[3], dou
     {
       return status;
     }
-    if (*count > before)
-    {
-      known[(*known_count)++] = sheet;
-    }
+    list->tries[place] = *count > before ? MAX_TRIES : list->tries[place] + 1;
   }
   return MLIM_OK;
 }
@@ -167,12 +186,7 @@ static mlim_status seed_point(mlim_complex* complex, const int32_t point[3], dou
 static mlim_status seed_block(
   mlim_complex* complex, const block* b, double distance, mlim_context* context, size_t* count)
 {
-  enum
-  {
-    MAX_SHEETS = 32 /* of one block; further ones wait for refinement */
-  };
-  mlim_sheet known[MAX_SHEETS];
-  size_t known_count = 0;
+  sheet_list list = { .count = 0 };
   int32_t p[3];
   for (p[2] = b->low[2]; p[2] < b->high[2]; ++p[2])
   {
@@ -184,8 +198,7 @@ static mlim_status seed_block(
         {
           continue;
         }
-        const mlim_status status =
-          seed_point(complex, p, distance, known, &known_count, MAX_SHEETS, context, count);
+        const mlim_status status = seed_point(complex, p, distance, &list, context, count);
         if (status != MLIM_OK)
         {
           return status;

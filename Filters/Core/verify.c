@@ -28,7 +28,7 @@ static const double FAR_SHARE = 0.005;
 
 enum
 {
-  FAR_ROUNDS = 3 /* the later ones find nearly nothing, and a look costs as much as the first */
+  FAR_ROUNDS = 2 /* the later ones find nearly nothing, and a look costs as much as the first */
 };
 
 /* ---- far crossings ---- */
@@ -108,7 +108,7 @@ static mlim_status insert_far(
   /* The first rounds take few of the crossings that lie together; what they do not bring near is
      left for the later ones, which look closer. */
   const double distance = mlim_max(
-    options->smallest_distance, 0.5 * options->facet_size * pow(0.5, job->verification->round));
+    options->smallest_distance, 0.25 * options->facet_size * pow(0.5, job->verification->round));
   mlim_status status = MLIM_OK;
   for (size_t z = 0; z < slices && status == MLIM_OK; ++z)
   {

@@ -59,16 +59,11 @@ static void volume_body(void* data, size_t begin, size_t end)
 static void count_voxels(const mlim_field* field, size_t* voxels)
 {
   const int32_t* dims = mlim_field_grid_of(field)->dims;
-  int32_t p[3];
-  for (p[2] = 0; p[2] < dims[2]; ++p[2])
+  const uint16_t* labels = mlim_field_point_labels(field);
+  const size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
+  for (size_t p = 0; p < count; ++p)
   {
-    for (p[1] = 0; p[1] < dims[1]; ++p[1])
-    {
-      for (p[0] = 0; p[0] < dims[0]; ++p[0])
-      {
-        ++voxels[mlim_field_point_label(field, p)];
-      }
-    }
+    ++voxels[labels[p]];
   }
 }
 
