@@ -3,8 +3,6 @@
 #include "memory.h"
 #include "status.h"
 
-#include <stdlib.h>
-
 mlim_status mlim_ball_links_create(
   const mlim_balls* balls, mlim_context* context, mlim_ball_links* out)
 {
@@ -53,7 +51,7 @@ void mlim_star_free(mlim_star* star)
 
 static int push(int32_t** array, size_t* count, size_t* capacity, int32_t value)
 {
-  if (mlim_reserve(array, capacity, *count + 1, sizeof **array))
+  if (*count == *capacity && mlim_reserve(array, capacity, *count + 1, sizeof **array))
   {
     return 1;
   }
@@ -110,11 +108,19 @@ static int gather(mlim_complex* complex, int32_t vertex, mlim_star* star)
 
 /* ---- the link as a graph ---- */
 
-static int compare_ids(const void* a, const void* b)
+/* By insertion: a link has about a dozen vertices, and qsort costs more than that. */
+static void sort_ids(int32_t* ids, size_t count)
 {
-  const int32_t x = *(const int32_t*)a;
-  const int32_t y = *(const int32_t*)b;
-  return (x > y) - (x < y);
+  for (size_t k = 1; k < count; ++k)
+  {
+    const int32_t id = ids[k];
+    size_t at = k;
+    for (; at > 0 && ids[at - 1] > id; --at)
+    {
+      ids[at] = ids[at - 1];
+    }
+    ids[at] = id;
+  }
 }
 
 static int collect_link(mlim_star* star)
@@ -127,10 +133,7 @@ static int collect_link(mlim_star* star)
       return 1;
     }
   }
-  if (star->link_count > 1)
-  {
-    qsort(star->link, star->link_count, sizeof *star->link, compare_ids);
-  }
+  sort_ids(star->link, star->link_count);
   size_t kept = 0;
   for (size_t k = 0; k < star->link_count; ++k)
   {

@@ -9,7 +9,7 @@
 
 enum
 {
-  MAX_SWEEPS = 12, /* over all cells or vertices; each mends what the one before made mendable */
+  MAX_STACK = 256, /* cells that one change may lead to */
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
   SHAPE_SWEEPS = 2,
@@ -127,25 +127,45 @@ static int32_t best_label(const mlim_complex* complex, int32_t id)
   return best;
 }
 
-/* Each change lowers the number of strays, so this ends; the sweeps bound the time. */
+/* Mends one cell, then its neighbours as far as the change reaches. Each change lowers the number of
+   strays, so this ends; what a full stack leaves out stays as it is. */
+static size_t mend_strays_from(mlim_complex* complex, int32_t first)
+{
+  int32_t stack[MAX_STACK];
+  size_t count = 0;
+  size_t changed = 0;
+  stack[count++] = first;
+  while (count > 0)
+  {
+    const int32_t id = stack[--count];
+    mlim_cell* cell = &complex->cells[id];
+    if (is_frozen(complex, cell) || cell_strays(complex, id, cell->label) == 0)
+    {
+      continue;
+    }
+    const int32_t label = best_label(complex, id);
+    if (label == cell->label)
+    {
+      continue;
+    }
+    cell->label = label;
+    ++changed;
+    for (int k = 0; k < 4 && count < MAX_STACK; ++k)
+    {
+      stack[count++] = cell->neighbors[k];
+    }
+  }
+  return changed;
+}
+
 static size_t mend_strays(mlim_complex* complex)
 {
   size_t changed = 0;
-  size_t before = SIZE_MAX;
-  for (int sweep = 0; sweep < MAX_SWEEPS && changed != before; ++sweep)
+  for (size_t c = 0; c < complex->cell_count; ++c)
   {
-    before = changed;
-    for (size_t c = 0; c < complex->cell_count; ++c)
+    if (complex->cells[c].vertices[0] >= 0)
     {
-      mlim_cell* cell = &complex->cells[c];
-      if (cell->vertices[0] < 0 || is_frozen(complex, cell) ||
-          cell_strays(complex, (int32_t)c, cell->label) == 0)
-      {
-        continue;
-      }
-      const int32_t label = best_label(complex, (int32_t)c);
-      changed += label != cell->label;
-      cell->label = label;
+      changed += mend_strays_from(complex, (int32_t)c);
     }
   }
   return changed;
