@@ -141,6 +141,7 @@ static mlim_status refine_all(build* b)
       status = mlim_verify_round(&verification, b->context, &found);
     }
   }
+  mlim_verify_free(&verification);
   return status == MLIM_OK && found > 0
            ? mlim_refine_run(&b->refinement, MLIM_GOAL_QUALITY, b->context)
            : status;

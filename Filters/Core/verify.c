@@ -28,18 +28,22 @@ static const double FAR_SHARE = 0.005;
 
 enum
 {
-  FAR_ROUNDS = 2 /* the later ones find nearly nothing, and a look costs as much as the first */
+  FAR_ROUNDS = 4 /* the later ones find nearly nothing */
 };
 
 /* ---- far crossings ---- */
 
-typedef struct far_list
+/* The crossings of one slice that were far at the last look. Refinement only adds, so later looks are
+   at these alone. */
+struct mlim_far_list
 {
   mlim_crossing* crossings;
   size_t count, capacity;
   size_t seen_count; /* crossings looked at */
   int has_failed;
-} far_list;
+};
+
+typedef struct mlim_far_list far_list;
 
 typedef struct far_job
 {
@@ -49,6 +53,7 @@ typedef struct far_job
   double bound;
   size_t min_voxels;
   far_list* lists; /* one a slice */
+  int is_listed;   /* not the first look */
 } far_job;
 
 typedef struct far_visit
@@ -66,6 +71,12 @@ static int is_small(const far_job* job, const int32_t point[3])
   return components->components[components->of_point[at]].voxel_count < job->min_voxels;
 }
 
+static int is_far(const far_job* job, const mlim_crossing* crossing)
+{
+  const double d = mlim_nearest_distance(job->nearest, crossing->point, job->bound, 2 * job->bound);
+  return d > job->bound;
+}
+
 static void visit_crossing(
   void* user, const int32_t low[3], const int32_t high[3], const mlim_crossing* crossing)
 {
@@ -77,8 +88,7 @@ static void visit_crossing(
     return;
   }
   ++list->seen_count;
-  if (mlim_nearest_distance(job->nearest, crossing->point, job->bound, 2 * job->bound) <=
-      job->bound)
+  if (!is_far(job, crossing))
   {
     return;
   }
@@ -90,11 +100,29 @@ static void visit_crossing(
   list->crossings[list->count++] = *crossing;
 }
 
+static void look_again(const far_job* job, far_list* list)
+{
+  size_t kept = 0;
+  for (size_t k = 0; k < list->count; ++k)
+  {
+    if (is_far(job, &list->crossings[k]))
+    {
+      list->crossings[kept++] = list->crossings[k];
+    }
+  }
+  list->count = kept;
+}
+
 static void far_body(void* data, size_t begin, size_t end)
 {
   const far_job* job = (const far_job*)data;
   for (size_t z = begin; z < end; ++z)
   {
+    if (job->is_listed)
+    {
+      look_again(job, &job->lists[z]);
+      continue;
+    }
     far_visit visit = { .job = job, .list = &job->lists[z] };
     mlim_crossings_of_slice(&job->oracle, (int32_t)z, visit_crossing, &visit);
   }
@@ -141,7 +169,7 @@ static int has_many_far(const far_job* job, size_t slices)
 }
 
 static mlim_status look_for_far(
-  const mlim_verification* v, const mlim_mesh* mesh, mlim_context* context, size_t* count)
+  mlim_verification* v, const mlim_mesh* mesh, mlim_context* context, size_t* count)
 {
   const mlim_complex* complex = &v->refinement->complex;
   const mlim_options* options = v->refinement->options;
@@ -159,37 +187,35 @@ static mlim_status look_for_far(
   {
     return status;
   }
-  far_job job = { .verification = v,
-    .nearest = &nearest,
-    .oracle = { .field = complex->oracle.field,
-      .tolerance = complex->oracle.tolerance,
-      .mode = MLIM_ORACLE_EXACT },
-    .bound = options->facet_distance,
-    .min_voxels = options->min_component_voxels,
-    .lists = mlim_allocate_zeroed(slices, sizeof *job.lists) };
-  if (job.lists == NULL)
+  const int is_listed = v->far != NULL;
+  v->far = is_listed ? v->far : mlim_allocate_zeroed(slices, sizeof *v->far);
+  if (v->far == NULL)
   {
     status = mlim_fail_memory(context, "the crossings far from the mesh");
   }
   else
   {
-    const double done = v->refinement->progress;
-    status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = slices,
-                                            .body = far_body,
-                                            .job = &job,
-                                            .stage = MLIM_STAGE_SURFACE,
-                                            .from = done,
-                                            .to = done });
+    far_job job = { .verification = v,
+      .nearest = &nearest,
+      .oracle = { .field = complex->oracle.field,
+        .tolerance = complex->oracle.tolerance,
+        .mode = MLIM_ORACLE_EXACT },
+      .bound = options->facet_distance,
+      .min_voxels = options->min_component_voxels,
+      .lists = v->far,
+      .is_listed = is_listed };
+    const mlim_stage_work work = { .count = slices,
+      .body = far_body,
+      .job = &job,
+      .stage = MLIM_STAGE_SURFACE,
+      .from = v->refinement->progress,
+      .to = v->refinement->progress };
+    status = mlim_parallel_stage(context, &work);
     if (status == MLIM_OK && has_many_far(&job, slices))
     {
       status = insert_far(&job, slices, context, count);
     }
-    for (size_t z = 0; z < slices; ++z)
-    {
-      mlim_release(job.lists[z].crossings);
-    }
   }
-  mlim_release(job.lists);
   mlim_nearest_free(&nearest);
   return status;
 }
@@ -255,6 +281,22 @@ static mlim_status look_for_components(
   *count += seeded;
   mlim_release(is_wanted);
   return status;
+}
+
+void mlim_verify_free(mlim_verification* verification)
+{
+  if (verification->far == NULL)
+  {
+    return;
+  }
+  const mlim_field* field = verification->refinement->complex.oracle.field;
+  const size_t slices = (size_t)mlim_field_grid_of(field)->dims[2];
+  for (size_t z = 0; z < slices; ++z)
+  {
+    mlim_release(verification->far[z].crossings);
+  }
+  mlim_release(verification->far);
+  verification->far = NULL;
 }
 
 mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* context, size_t* count)
