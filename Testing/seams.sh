@@ -17,7 +17,7 @@ fail() {
 # two parts of one place do not see each other. A file of two words that is not named belongs to its
 # first one: field_build to field.
 order='
-0 base          mlim vector cubic tie
+0 base          mlim vector triangle cubic tie
 1 services      memory status
 2 pieces        samples label_sets point_grid
 3 field         plateau field clearance field_build options components

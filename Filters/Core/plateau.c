@@ -12,7 +12,7 @@ enum
   SWEEPS = 64,
   /* With more ties than one grid point in this many, the indicators say nothing: the lowest index
      wins after all. */
-  SPARSE = 4,
+  SPARSE = 2,
   NO_TIE = -1
 };
 

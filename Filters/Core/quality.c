@@ -2,7 +2,7 @@
 
 #include "memory.h"
 #include "status.h"
-#include "vector.h"
+#include "triangle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -191,32 +191,21 @@ static void measure_triangle(mlim_mesh* mesh, size_t t, double bound, double* ra
   const int32_t* id = mesh->triangles + 3 * t;
   const double* p[3];
   int has_ball = 0;
-  double shortest = INFINITY;
   for (int k = 0; k < 3; ++k)
   {
     p[k] = mesh->vertices + 3 * (size_t)id[k];
     const int32_t type = mesh->node_types[id[k]] % MLIM_NODE_ON_BOX;
     has_ball |= type != MLIM_NODE_INTERFACE;
   }
-  double product = 1;
   for (int k = 0; k < 3; ++k)
   {
     double u[3];
     double v[3];
     mlim_subtract(p[(k + 1) % 3], p[k], u);
     mlim_subtract(p[(k + 2) % 3], p[k], v);
-    const double length = sqrt(mlim_dot(u, u));
-    shortest = mlim_min(shortest, length);
-    product *= length;
     report->min_angle = mlim_min(report->min_angle, angle_between(u, v));
   }
-  double u[3];
-  double v[3];
-  double n[3];
-  mlim_subtract(p[1], p[0], u);
-  mlim_subtract(p[2], p[0], v);
-  mlim_cross(u, v, n);
-  const double ratio = product / (2 * sqrt(mlim_dot(n, n))) / shortest;
+  const double ratio = sqrt(mlim_radius_edge_ratio_squared(p[0], p[1], p[2]));
   double* worst = has_ball ? &report->max_ball_radius_edge_ratio : &report->max_radius_edge_ratio;
   *worst = mlim_max(*worst, ratio);
   report->relabeled_ratio_count += !has_ball && ratio > bound * (1 + ROUNDING);

@@ -2,7 +2,7 @@
 
 #include "memory.h"
 #include "status.h"
-#include "vector.h"
+#include "triangle.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -65,18 +65,8 @@ static int is_misshapen(const mlim_refinement* r, const mlim_cell* cell, int ind
     }
     p[k] = v->point;
   }
-  double u[3];
-  double v[3];
-  double n[3];
-  mlim_subtract(p[1], p[0], u);
-  mlim_subtract(p[2], p[0], v);
-  mlim_cross(u, v, n);
-  const double a = mlim_dot(u, u);
-  const double b = mlim_dot(v, v);
-  const double c = mlim_distance_squared(p[1], p[2]);
-  /* R^2 = a b c / (4 |n|^2) */
   const double bound = r->options->facet_radius_edge_ratio;
-  return a * b * c > 4 * mlim_dot(n, n) * bound * bound * mlim_min(a, mlim_min(b, c));
+  return mlim_radius_edge_ratio_squared(p[0], p[1], p[2]) > bound * bound;
 }
 
 static int cell_strays(const mlim_complex* complex, int32_t id, int32_t label)
