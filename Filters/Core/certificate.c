@@ -153,8 +153,7 @@ static mlim_status measure_distances(
 {
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
   mlim_nearest nearest;
-  mlim_status status = mlim_nearest_create(
-    mesh, grid->size, mlim_max(options->facet_size, grid->unit), context, &nearest);
+  mlim_status status = mlim_nearest_create(mesh, grid->size, grid->unit, context, &nearest);
   if (status != MLIM_OK)
   {
     return status;

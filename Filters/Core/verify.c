@@ -181,8 +181,7 @@ static mlim_status look_for_far(
   {
     return status;
   }
-  status = mlim_nearest_create(
-    mesh, grid->size, mlim_max(options->facet_size, grid->unit), context, &nearest);
+  status = mlim_nearest_create(mesh, grid->size, grid->unit, context, &nearest);
   if (status != MLIM_OK)
   {
     return status;
