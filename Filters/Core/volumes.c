@@ -1,5 +1,6 @@
 #include "volumes.h"
 
+#include "field_index.h"
 #include "memory.h"
 #include "status.h"
 #include "vector.h"
@@ -13,44 +14,41 @@ typedef struct volume_job
   double* volumes; /* label_count a slice of cells */
 } volume_job;
 
-static void add_cell(const mlim_field* field, const int32_t cell[3], double* volumes)
+static void add_mixed_cell(
+  const mlim_field* field, const int32_t cell[3], double part, double* volumes)
 {
-  const mlim_field_grid* grid = mlim_field_grid_of(field);
-  double middle[3];
-  int clearance;
-  double whole = 1;
-  for (int k = 0; k < 3; ++k)
-  {
-    middle[k] = (cell[k] + 0.5) * grid->spacing[k];
-    whole *= grid->spacing[k];
-  }
-  const int32_t label = mlim_field_label_near(field, middle, &clearance);
-  if (clearance > 0)
-  {
-    volumes[label] += whole;
-    return;
-  }
+  const double* spacing = field->grid.spacing;
   for (int c = 0; c < 8; ++c)
   {
-    const double at[3] = { middle[0] + (c & 1 ? 0.25 : -0.25) * grid->spacing[0],
-      middle[1] + (c & 2 ? 0.25 : -0.25) * grid->spacing[1],
-      middle[2] + (c & 4 ? 0.25 : -0.25) * grid->spacing[2] };
-    volumes[mlim_field_label(field, at)] += whole / 8;
+    const double at[3] = { (cell[0] + (c & 1 ? 0.75 : 0.25)) * spacing[0],
+      (cell[1] + (c & 2 ? 0.75 : 0.25)) * spacing[1],
+      (cell[2] + (c & 4 ? 0.75 : 0.25)) * spacing[2] };
+    volumes[mlim_field_label(field, at)] += part;
   }
 }
 
 static void volume_body(void* data, size_t begin, size_t end)
 {
   const volume_job* job = (const volume_job*)data;
-  const int32_t* cells = mlim_field_grid_of(job->field)->cells;
+  const mlim_field_grid* grid = &job->field->grid;
+  const double whole = grid->spacing[0] * grid->spacing[1] * grid->spacing[2];
   for (size_t z = begin; z < end; ++z)
   {
+    double* volumes = job->volumes + z * job->label_count;
     int32_t cell[3] = { 0, 0, (int32_t)z };
-    for (cell[1] = 0; cell[1] < cells[1]; ++cell[1])
+    for (cell[1] = 0; cell[1] < grid->cells[1]; ++cell[1])
     {
-      for (cell[0] = 0; cell[0] < cells[0]; ++cell[0])
+      for (cell[0] = 0; cell[0] < grid->cells[0]; ++cell[0])
       {
-        add_cell(job->field, cell, job->volumes + z * job->label_count);
+        const uint32_t word = field_cell_word(job->field, cell, NULL);
+        if (word & (uint32_t)MIXED)
+        {
+          add_mixed_cell(job->field, cell, whole / 8, volumes);
+        }
+        else
+        {
+          volumes[word] += whole;
+        }
       }
     }
   }
