@@ -14,302 +14,301 @@
 #include <stdint.h>
 
 #ifdef __cplusplus
-extern "C"
-{
+extern "C" {
 #endif
 
-  typedef enum mlim_status
-  {
-    MLIM_OK,
-    MLIM_INVALID_ARGUMENT, /* an input or an option is out of range */
-    MLIM_OUT_OF_MEMORY,
-    MLIM_CANCELLED,    /* the host's progress function asked to stop */
-    MLIM_VERTEX_LIMIT, /* the vertex budget is used up; the mesh is valid but unfinished */
-    MLIM_INTERNAL,     /* a promise of the core itself was broken: please report */
-    MLIM_STATUS_END
-  } mlim_status;
+typedef enum mlim_status
+{
+  MLIM_OK,
+  MLIM_INVALID_ARGUMENT, /* an input or an option is out of range */
+  MLIM_OUT_OF_MEMORY,
+  MLIM_CANCELLED,    /* the host's progress function asked to stop */
+  MLIM_VERTEX_LIMIT, /* the vertex budget is used up; the mesh is valid but unfinished */
+  MLIM_INTERNAL,     /* a promise of the core itself was broken: please report */
+  MLIM_STATUS_END
+} mlim_status;
 
-  /* A short text for a status; never NULL. */
-  const char* mlim_status_text(mlim_status status);
+/* A short text for a status; never NULL. */
+const char* mlim_status_text(mlim_status status);
 
-  typedef enum mlim_stage
-  {
-    MLIM_STAGE_FIELD,
-    MLIM_STAGE_CURVES,
-    MLIM_STAGE_BALLS,
-    MLIM_STAGE_SURFACE,
-    MLIM_STAGE_CERTIFICATE,
-    MLIM_STAGE_END
-  } mlim_stage;
+typedef enum mlim_stage
+{
+  MLIM_STAGE_FIELD,
+  MLIM_STAGE_CURVES,
+  MLIM_STAGE_BALLS,
+  MLIM_STAGE_SURFACE,
+  MLIM_STAGE_CERTIFICATE,
+  MLIM_STAGE_END
+} mlim_stage;
 
-  /* The stage's name in words, for a progress text; never NULL. */
-  const char* mlim_stage_text(mlim_stage stage);
+/* The stage's name in words, for a progress text; never NULL. */
+const char* mlim_stage_text(mlim_stage stage);
 
-  /* Work on the items [begin, end) of a job. */
-  typedef void (*mlim_body)(void* job, size_t begin, size_t end);
+/* Work on the items [begin, end) of a job. */
+typedef void (*mlim_body)(void* job, size_t begin, size_t end);
 
-  /* One context a run. Everything may be 0. */
-  typedef struct mlim_context
-  {
-    /* Called on the calling thread; fraction in [0, 1] does not fall within a stage. A result other
+/* One context a run. Everything may be 0. */
+typedef struct mlim_context
+{
+  /* Called on the calling thread; fraction in [0, 1] does not fall within a stage. A result other
      than 0 cancels. NULL: no progress. */
-    int (*progress)(void* user, mlim_stage stage, double fraction);
-    /* Calls body on disjoint ranges that cover [0, count), in any order, on any threads, and returns
+  int (*progress)(void* user, mlim_stage stage, double fraction);
+  /* Calls body on disjoint ranges that cover [0, count), in any order, on any threads, and returns
      when all are done. NULL: the core runs serially. Results never depend on it. */
-    void (*parallel_for)(void* user, size_t count, mlim_body body, void* job);
-    void* user;        /* borrowed; handed to both functions */
-    char message[512]; /* after a failure: one sentence, zero-terminated */
-  } mlim_context;
+  void (*parallel_for)(void* user, size_t count, mlim_body body, void* job);
+  void* user;        /* borrowed; handed to both functions */
+  char message[512]; /* after a failure: one sentence, zero-terminated */
+} mlim_context;
 
-  /* ---- input --------------------------------------------------------------------------------- */
+/* ---- input --------------------------------------------------------------------------------- */
 
-  typedef enum mlim_scalar
-  {
-    MLIM_INT8,
-    MLIM_UINT8,
-    MLIM_INT16,
-    MLIM_UINT16,
-    MLIM_INT32,
-    MLIM_UINT32,
-    MLIM_INT64,
-    MLIM_UINT64,
-    MLIM_FLOAT32,
-    MLIM_FLOAT64,
-    MLIM_SCALAR_END
-  } mlim_scalar;
+typedef enum mlim_scalar
+{
+  MLIM_INT8,
+  MLIM_UINT8,
+  MLIM_INT16,
+  MLIM_UINT16,
+  MLIM_INT32,
+  MLIM_UINT32,
+  MLIM_INT64,
+  MLIM_UINT64,
+  MLIM_FLOAT32,
+  MLIM_FLOAT64,
+  MLIM_SCALAR_END
+} mlim_scalar;
 
-  /* One indicator function on the grid; x varies fastest. */
-  typedef struct mlim_array
-  {
-    const void* values; /* borrowed; dims[0] dims[1] dims[2] scalars, `stride` apart */
-    mlim_scalar type;
-    size_t stride;    /* in scalars; 1 for a plain array */
-    int32_t id;       /* the label's id in the output; 0 is the background's */
-    const char* name; /* borrowed; for messages; NULL: "array <k>" */
-  } mlim_array;
+/* One indicator function on the grid; x varies fastest. */
+typedef struct mlim_array
+{
+  const void* values; /* borrowed; dims[0] dims[1] dims[2] scalars, `stride` apart */
+  mlim_scalar type;
+  size_t stride;    /* in scalars; 1 for a plain array */
+  int32_t id;       /* the label's id in the output; 0 is the background's */
+  const char* name; /* borrowed; for messages; NULL: "array <k>" */
+} mlim_array;
 
-  typedef enum mlim_background
-  {
-    MLIM_BACKGROUND_NONE,      /* every array is a region; only the outside is background */
-    MLIM_BACKGROUND_ARRAY,     /* the array number `background_array` */
-    MLIM_BACKGROUND_CONSTANT,  /* an extra label, before all arrays: background_value everywhere */
-    MLIM_BACKGROUND_COMPLEMENT /* an extra label, before all arrays: (largest sum) - (sum here) */
-  } mlim_background;
+typedef enum mlim_background
+{
+  MLIM_BACKGROUND_NONE,      /* every array is a region; only the outside is background */
+  MLIM_BACKGROUND_ARRAY,     /* the array number `background_array` */
+  MLIM_BACKGROUND_CONSTANT,  /* an extra label, before all arrays: background_value everywhere */
+  MLIM_BACKGROUND_COMPLEMENT /* an extra label, before all arrays: (largest sum) - (sum here) */
+} mlim_background;
 
-  typedef enum mlim_tie_breaking
-  {
-    MLIM_TIE_SMOOTH,      /* on plateaus a low-pass filtered copy of the tied indicators decides */
-    MLIM_TIE_LOWEST_INDEX /* the lowest index wins */
-  } mlim_tie_breaking;
+typedef enum mlim_tie_breaking
+{
+  MLIM_TIE_SMOOTH,      /* on plateaus a low-pass filtered copy of the tied indicators decides */
+  MLIM_TIE_LOWEST_INDEX /* the lowest index wins */
+} mlim_tie_breaking;
 
-  /* What happens to a label between grid points none of which has it: films, wedges and specks thinner
+/* What happens to a label between grid points none of which has it: films, wedges and specks thinner
    than the grid can see. A grid point sees a label if one of its 27 neighbours has it. */
-  typedef enum mlim_unseen
-  {
-    MLIM_UNSEEN_KEEP, /* the interpolants decide everywhere */
-    MLIM_UNSEEN_DROP  /* where it is not seen a label is at most second: the film ends there */
-  } mlim_unseen;
+typedef enum mlim_unseen
+{
+  MLIM_UNSEEN_KEEP, /* the interpolants decide everywhere */
+  MLIM_UNSEEN_DROP  /* where it is not seen a label is at most second: the film ends there */
+} mlim_unseen;
 
-  typedef struct mlim_grid
-  {
-    int32_t dims[3];                 /* points along each axis; at least 2 */
-    double spacing[3];               /* finite, above 0 */
-    size_t array_count;              /* 1 to 32000 */
-    const mlim_array* arrays;        /* borrowed */
-    const unsigned char* is_outside; /* borrowed; one byte a point, not 0: outside; NULL: none */
-    mlim_background background;
-    size_t background_array; /* with MLIM_BACKGROUND_ARRAY */
-    double background_value; /* with MLIM_BACKGROUND_CONSTANT; finite */
-    mlim_tie_breaking tie_breaking;
-    mlim_unseen unseen;
-  } mlim_grid;
+typedef struct mlim_grid
+{
+  int32_t dims[3];                 /* points along each axis; at least 2 */
+  double spacing[3];               /* finite, above 0 */
+  size_t array_count;              /* 1 to 32000 */
+  const mlim_array* arrays;        /* borrowed */
+  const unsigned char* is_outside; /* borrowed; one byte a point, not 0: outside; NULL: none */
+  mlim_background background;
+  size_t background_array; /* with MLIM_BACKGROUND_ARRAY */
+  double background_value; /* with MLIM_BACKGROUND_CONSTANT; finite */
+  mlim_tie_breaking tie_breaking;
+  mlim_unseen unseen;
+} mlim_grid;
 
-  /* The index over the grid. Holds no pointer into the grid's arrays once it is made. */
-  typedef struct mlim_field mlim_field;
+/* The index over the grid. Holds no pointer into the grid's arrays once it is made. */
+typedef struct mlim_field mlim_field;
 
-  /* Refuses (MLIM_INVALID_ARGUMENT): fewer than 2 points along an axis, bad spacing, no array,
+/* Refuses (MLIM_INVALID_ARGUMENT): fewer than 2 points along an axis, bad spacing, no array,
    non-finite values (says how many, in which array, where first). */
-  mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim_field** out);
-  void mlim_field_free(mlim_field* field);
+mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim_field** out);
+void mlim_field_free(mlim_field* field);
 
-  /* Labels are indices 0 .. count-1: the background's extra label first if there is one, then the
+/* Labels are indices 0 .. count-1: the background's extra label first if there is one, then the
    arrays in their order. Where no label of the input is background, one more stands for the
    outside. */
-  int32_t mlim_field_label_count(const mlim_field* field);
-  int32_t mlim_field_label_id(const mlim_field* field, int32_t label);
-  /* The label of everything outside the image: the background's. Its id is 0. */
-  int32_t mlim_field_outside_label(const mlim_field* field);
-  /* Label of a point; outside the box the outside's. Section 3.1: argmax of the interpolants. */
-  int32_t mlim_field_label(const mlim_field* field, const double point[3]);
+int32_t mlim_field_label_count(const mlim_field* field);
+int32_t mlim_field_label_id(const mlim_field* field, int32_t label);
+/* The label of everything outside the image: the background's. Its id is 0. */
+int32_t mlim_field_outside_label(const mlim_field* field);
+/* Label of a point; outside the box the outside's. Section 3.1: argmax of the interpolants. */
+int32_t mlim_field_label(const mlim_field* field, const double point[3]);
 
-  /* Label sets of curves and balls also name the face of the box on which they lie: code
+/* Label sets of curves and balls also name the face of the box on which they lie: code
    label_count + face, faces being 0 .. 5 for -x +x -y +y -z +z. */
 
-  /* ---- options ------------------------------------------------------------------------------- */
+/* ---- options ------------------------------------------------------------------------------- */
 
-  typedef enum mlim_oracle_mode
-  {
-    MLIM_ORACLE_EXACT,    /* walks the cells, finds every crossing */
-    MLIM_ORACLE_BISECTION /* the paper's: looks at midpoints only */
-  } mlim_oracle_mode;
+typedef enum mlim_oracle_mode
+{
+  MLIM_ORACLE_EXACT,    /* walks the cells, finds every crossing */
+  MLIM_ORACLE_BISECTION /* the paper's: looks at midpoints only */
+} mlim_oracle_mode;
 
-  /* Lengths in units of the grid. */
-  typedef struct mlim_options
-  {
-    double facet_size;               /* bound on the radius of a surface Delaunay ball; > 0 */
-    double facet_radius_edge_ratio;  /* bound on circumradius / shortest edge; >= 0.6 */
-    double facet_distance;           /* bound on circumcentre to crossing; > 0 */
-    double edge_size;                /* largest distance of neighbours on a curve; > 0 */
-    double ball_radius_scale;        /* scales the first radii of the balls; in (0, 1] */
-    double crossing_tolerance;       /* length at which the search of a crossing stops; > 0 */
-    double junction_merge_tolerance; /* junctions closer than this become one; >= 0 */
-    double smallest_distance;        /* no two vertices are made closer than this; > 0 */
-    double
-      volume_tolerance; /* regions are meshed finer than facet_distance where their volume would
-                              differ more than this from the image's, relative; in [0, 1), 0: off */
-    mlim_oracle_mode oracle_mode;
-    size_t vertex_limit;         /* largest number of vertices; > 0 */
-    size_t min_component_voxels; /* smaller components need not be in the mesh; >= 1 */
-  } mlim_options;
+/* Lengths in units of the grid. */
+typedef struct mlim_options
+{
+  double facet_size;               /* bound on the radius of a surface Delaunay ball; > 0 */
+  double facet_radius_edge_ratio;  /* bound on circumradius / shortest edge; >= 0.6 */
+  double facet_distance;           /* bound on a crossing's height above its facet; > 0 */
+  double edge_size;                /* largest distance of neighbours on a curve; > 0 */
+  double ball_radius_scale;        /* scales the first radii of the balls; in [0.01, 1] */
+  double crossing_tolerance;       /* length at which the search of a crossing stops; > 0 */
+  double junction_merge_tolerance; /* junctions closer than this become one; >= 0 */
+  double smallest_distance;        /* no two vertices are made closer than this; > 0 */
+  /* Regions are meshed finer than facet_distance where their volume would differ more than this,
+     relative, from the image's; in [0, 1), 0: off. */
+  double volume_tolerance;
+  mlim_oracle_mode oracle_mode;
+  size_t vertex_limit;         /* largest number of vertices; > 0 */
+  size_t min_component_voxels; /* smaller components need not be in the mesh; >= 1 */
+} mlim_options;
 
-  /* Lengths as multiples of the field's spacing (cube root of the voxel's volume): facet_size 2,
+/* Lengths as multiples of the field's spacing (cube root of the voxel's volume): facet_size 2,
    facet_distance and edge_size from it, see mlim_options_complete. */
-  mlim_options mlim_options_default(const mlim_field* field);
-  /* Fills in each length that is 0 (junction_merge_tolerance: below 0): facet_size = 2 spacings,
+mlim_options mlim_options_default(const mlim_field* field);
+/* Fills in each length that is 0 (junction_merge_tolerance: below 0): facet_size = 2 spacings,
    facet_distance = facet_size / 8, edge_size = facet_size, crossing_tolerance = 1e-6,
    junction_merge_tolerance = 0.25 spacings, smallest_distance = facet_size / 8 but at most 0.5
    spacings. Then checks every option. */
-  mlim_status mlim_options_complete(
-    const mlim_field* field, mlim_context* context, mlim_options* options);
+mlim_status mlim_options_complete(
+  const mlim_field* field, mlim_context* context, mlim_options* options);
 
-  /* ---- curves -------------------------------------------------------------------------------- */
+/* ---- curves -------------------------------------------------------------------------------- */
 
-  /* Sets of label codes, each ascending and without repetition. */
-  typedef struct mlim_sets
-  {
-    size_t count;
-    size_t* offsets; /* count + 1; set s is labels[offsets[s] .. offsets[s + 1]) */
-    int32_t* labels;
-  } mlim_sets;
+/* Sets of label codes, each ascending and without repetition. */
+typedef struct mlim_sets
+{
+  size_t count;
+  size_t* offsets; /* count + 1; set s is labels[offsets[s] .. offsets[s + 1]) */
+  int32_t* labels;
+} mlim_sets;
 
-  /* The 1-skeleton: where three or more labels meet, and the creases of the caps. */
-  typedef struct mlim_curves
-  {
-    size_t point_count;
-    double* points; /* 3 each */
-    size_t curve_count;
-    size_t* curve_offsets; /* curve_count + 1, into curve_points */
-    int32_t* curve_points; /* a closed loop repeats its first point at its end */
-    int32_t* curve_sets;   /* per curve: index into sets */
-    size_t junction_count; /* ends of curves; isolated junctions do not occur */
-    int32_t* junction_points;
-    int32_t* junction_sets;
-    mlim_sets sets;
-  } mlim_curves;
+/* The 1-skeleton: where three or more labels meet, and the creases of the caps. */
+typedef struct mlim_curves
+{
+  size_t point_count;
+  double* points; /* 3 each */
+  size_t curve_count;
+  size_t* curve_offsets; /* curve_count + 1, into curve_points */
+  int32_t* curve_points; /* a closed loop repeats its first point at its end */
+  int32_t* curve_sets;   /* per curve: index into sets */
+  size_t junction_count; /* ends of curves; isolated junctions do not occur */
+  int32_t* junction_points;
+  int32_t* junction_sets;
+  mlim_sets sets;
+} mlim_curves;
 
-  mlim_status mlim_curves_extract(
-    const mlim_field* field, const mlim_options* options, mlim_context* context, mlim_curves* out);
-  void mlim_curves_free(mlim_curves* curves);
+mlim_status mlim_curves_extract(
+  const mlim_field* field, const mlim_options* options, mlim_context* context, mlim_curves* out);
+void mlim_curves_free(mlim_curves* curves);
 
-  /* ---- balls --------------------------------------------------------------------------------- */
+/* ---- balls --------------------------------------------------------------------------------- */
 
-  /* Protecting balls: junction balls first, then those of each curve in order. */
-  typedef struct mlim_balls
-  {
-    size_t ball_count;
-    double* centers;      /* 3 each */
-    double* radii;        /* > 0 */
-    int32_t* ball_curves; /* curve of each ball; -1 for a junction's */
-    int32_t* ball_sets;   /* index into sets */
-    size_t edge_count;    /* pairs of neighbours on a curve */
-    int32_t* edges;       /* 2 each */
-    int32_t* edge_curves;
-    mlim_sets sets;
-  } mlim_balls;
+/* Protecting balls: junction balls first, then those of each curve in order. */
+typedef struct mlim_balls
+{
+  size_t ball_count;
+  double* centers;      /* 3 each */
+  double* radii;        /* > 0 */
+  int32_t* ball_curves; /* curve of each ball; -1 for a junction's */
+  int32_t* ball_sets;   /* index into sets */
+  size_t edge_count;    /* pairs of neighbours on a curve */
+  int32_t* edges;       /* 2 each */
+  int32_t* edge_curves;
+  mlim_sets sets;
+} mlim_balls;
 
-  mlim_status mlim_balls_cover(
-    const mlim_curves* curves, const mlim_options* options, mlim_context* context, mlim_balls* out);
-  void mlim_balls_free(mlim_balls* balls);
+mlim_status mlim_balls_cover(
+  const mlim_curves* curves, const mlim_options* options, mlim_context* context, mlim_balls* out);
+void mlim_balls_free(mlim_balls* balls);
 
-  /* ---- mesh ---------------------------------------------------------------------------------- */
+/* ---- mesh ---------------------------------------------------------------------------------- */
 
-  /* How far the mesh is right, measured after refinement. */
-  typedef struct mlim_certificate
-  {
-    size_t label_count;           /* labels that own a component of at least min_component_voxels */
-    size_t lost_label_count;      /* of them not in the mesh */
-    size_t component_count;       /* 26-connected, at least min_component_voxels, not background */
-    size_t lost_component_count;  /* of them not in the mesh */
-    size_t disk_failure_count;    /* vertices that do not satisfy the disk condition */
-    size_t open_edge_count;       /* edges round which a region's boundary does not close */
-    size_t grid_crossing_count;   /* label changes on grid edges */
-    size_t far_crossing_count;    /* of them farther than facet_distance from the mesh */
-    double max_crossing_distance; /* largest distance of a grid crossing from the mesh; searched up
+/* How far the mesh is right, measured after refinement. */
+typedef struct mlim_certificate
+{
+  size_t label_count;           /* labels that own a component of at least min_component_voxels */
+  size_t lost_label_count;      /* of them not in the mesh */
+  size_t component_count;       /* 26-connected, at least min_component_voxels, not background */
+  size_t lost_component_count;  /* of them not in the mesh */
+  size_t disk_failure_count;    /* vertices that do not satisfy the disk condition */
+  size_t open_edge_count;       /* edges round which a region's boundary does not close */
+  size_t grid_crossing_count;   /* label changes on grid edges */
+  size_t far_crossing_count;    /* of them farther than facet_distance from the mesh */
+  double max_crossing_distance; /* largest distance of a grid crossing from the mesh; searched up
                                     to 4 facet_distance + 2 spacings */
-    double max_volume_difference; /* largest relative difference of a region's volume to the
+  double max_volume_difference; /* largest relative difference of a region's volume to the
                                     image's, over labels of at least 1000 voxels */
-  } mlim_certificate;
+} mlim_certificate;
 
-  /* What refinement left undone, by kind, and the figures of the paper's Table 3. */
-  typedef struct mlim_report
-  {
-    size_t insertion_count;
-    size_t unresolved_crossing_count; /* facets whose dual crosses more than once */
-    size_t unresolved_patch_count;    /* facets with a vertex of a foreign patch */
-    size_t unresolved_size_count;     /* facets above facet_size, by the length floor or a ball */
-    size_t unresolved_distance_count;
-    size_t unresolved_ratio_count; /* without a ball vertex */
-    size_t relabeled_ratio_count;  /* without a ball vertex, come to light by relabelled cells */
-    size_t unresolved_ball_ratio_count; /* with a ball vertex: quality gives way near balls */
-    size_t hidden_ball_count;           /* balls left out because another one covers them */
-    size_t lost_curve_edge_count;  /* neighbours on a curve between which the mesh has no edge */
-    size_t off_curve_edge_count;   /* edges of three or more triangles on no extracted curve */
-    size_t relabeled_cell_count;   /* to mend topology below the smallest distance */
-    double max_radius_edge_ratio;  /* triangles without a ball vertex */
-    double mean_radius_edge_ratio; /* all triangles */
-    double max_ball_radius_edge_ratio; /* triangles with a ball vertex */
-    double min_dihedral_angle;         /* degrees, between sheets round a curve edge; 180 without */
-    double min_angle;                  /* degrees, of all triangles */
-  } mlim_report;
+/* What refinement left undone, by kind, and the figures of the paper's Table 3. */
+typedef struct mlim_report
+{
+  size_t insertion_count;
+  size_t unresolved_crossing_count; /* facets whose dual crosses more than once */
+  size_t unresolved_patch_count;    /* facets with a vertex of a foreign patch */
+  size_t unresolved_size_count;     /* facets above facet_size, by the length floor or a ball */
+  size_t unresolved_distance_count;
+  size_t unresolved_ratio_count;      /* without a ball vertex */
+  size_t relabeled_ratio_count;       /* without a ball vertex, come to light by relabelled cells */
+  size_t unresolved_ball_ratio_count; /* with a ball vertex: quality gives way near balls */
+  size_t hidden_ball_count;           /* balls left out because another one covers them */
+  size_t lost_curve_edge_count;       /* neighbours on a curve between which the mesh has no edge */
+  size_t off_curve_edge_count;        /* edges of three or more triangles on no extracted curve */
+  size_t relabeled_cell_count;        /* to mend topology below the smallest distance */
+  double max_radius_edge_ratio;       /* triangles without a ball vertex */
+  double mean_radius_edge_ratio;      /* all triangles */
+  double max_ball_radius_edge_ratio;  /* triangles with a ball vertex */
+  double min_dihedral_angle;          /* degrees, between sheets round a curve edge; 180 without */
+  double min_angle;                   /* degrees, of all triangles */
+} mlim_report;
 
-  /* Node types as materials users know them. */
-  enum
-  {
-    MLIM_NODE_INTERFACE = 2,
-    MLIM_NODE_CURVE = 3,
-    MLIM_NODE_JUNCTION = 4,
-    MLIM_NODE_ON_BOX = 10 /* added to one of the above */
-  };
+/* Node types as materials users know them. */
+enum
+{
+  MLIM_NODE_INTERFACE = 2,
+  MLIM_NODE_CURVE = 3,
+  MLIM_NODE_JUNCTION = 4,
+  MLIM_NODE_ON_BOX = 10 /* added to one of the above */
+};
 
-  /* The labelled partition. Vertices used by triangles, curve edges or junctions only. */
-  typedef struct mlim_mesh
-  {
-    size_t vertex_count;
-    double* vertices;      /* 3 each */
-    int32_t* node_types;   /* MLIM_NODE_... */
-    int32_t* label_counts; /* number of labels that meet at the vertex, the outside being one */
-    size_t triangle_count;
-    int32_t* triangles;        /* 3 each; the normal points from the first label to the second */
-    int32_t* triangle_labels;  /* 2 label indices each: the background second, else by id */
-    int32_t* triangle_faces;   /* face of the box for a cap's triangle, else -1 */
-    int32_t* triangle_patches; /* connected interface piece, 0 .. patch_count - 1 */
-    size_t patch_count;
-    size_t edge_count;    /* curve edges, then those of three or more triangles off the curves */
-    int32_t* edges;       /* 2 vertices each */
-    int32_t* edge_curves; /* -1 off the curves */
-    size_t junction_count;
-    int32_t* junctions; /* vertices */
-    size_t label_count;
-    double* volumes; /* per label: enclosed by its triangles; 0 for the outside's */
-    mlim_report report;
-    mlim_certificate certificate;
-  } mlim_mesh;
+/* The labelled partition. Vertices used by triangles, curve edges or junctions only. */
+typedef struct mlim_mesh
+{
+  size_t vertex_count;
+  double* vertices;      /* 3 each */
+  int32_t* node_types;   /* MLIM_NODE_... */
+  int32_t* label_counts; /* number of labels that meet at the vertex, the outside being one */
+  size_t triangle_count;
+  int32_t* triangles;        /* 3 each; the normal points from the first label to the second */
+  int32_t* triangle_labels;  /* 2 label indices each: the background second, else by id */
+  int32_t* triangle_faces;   /* face of the box for a cap's triangle, else -1 */
+  int32_t* triangle_patches; /* connected interface piece, 0 .. patch_count - 1 */
+  size_t patch_count;
+  size_t edge_count;    /* curve edges, then those of three or more triangles off the curves */
+  int32_t* edges;       /* 2 vertices each */
+  int32_t* edge_curves; /* -1 off the curves */
+  size_t junction_count;
+  int32_t* junctions; /* vertices */
+  size_t label_count;
+  double* volumes; /* per label: enclosed by its triangles; 0 for the outside's */
+  mlim_report report;
+  mlim_certificate certificate;
+} mlim_mesh;
 
-  /* Refines the weighted Delaunay triangulation of the balls until all criteria hold, and reads the
+/* Refines the weighted Delaunay triangulation of the balls until all criteria hold, and reads the
    mesh from it. `balls` may have no ball. MLIM_VERTEX_LIMIT returns a mesh. */
-  mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
-    const mlim_options* options, mlim_context* context, mlim_mesh* out);
-  void mlim_mesh_free(mlim_mesh* mesh);
+mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
+  const mlim_options* options, mlim_context* context, mlim_mesh* out);
+void mlim_mesh_free(mlim_mesh* mesh);
 
 #ifdef __cplusplus
 }

@@ -2,8 +2,7 @@
 // inexact constructions). The only file that includes CGAL. Points go in one at a time: a range
 // insertion would reorder them.
 
-extern "C"
-{
+extern "C" {
 #include "delaunay.h"
 #include "status.h"
 }

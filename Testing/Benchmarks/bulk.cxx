@@ -1,7 +1,6 @@
 #include "bulk.h"
 
-extern "C"
-{
+extern "C" {
 #include "clock.h"
 }
 

@@ -5,16 +5,15 @@
 #include <stddef.h>
 
 #ifdef __cplusplus
-extern "C"
-{
+extern "C" {
 #endif
 
-  /* User CPU time of inserting the points, 4 numbers each (x, y, z, weight), as one range into an
+/* User CPU time of inserting the points, 4 numbers each (x, y, z, weight), as one range into an
    empty regular triangulation: the least of `repeats` times. Below 0: not enough memory. */
-  double bench_bulk_seconds(const double* xyzw, size_t count, int repeats);
+double bench_bulk_seconds(const double* xyzw, size_t count, int repeats);
 
-  /* CGAL's version; never NULL. */
-  const char* bench_bulk_version(void);
+/* CGAL's version; never NULL. */
+const char* bench_bulk_version(void);
 
 #ifdef __cplusplus
 }

@@ -5,28 +5,27 @@
 #include "mlim.h"
 
 #ifdef __cplusplus
-extern "C"
-{
+extern "C" {
 #endif
 
-  enum
-  {
-    BENCH_MESSAGE_SIZE = 512
-  };
+enum
+{
+  BENCH_MESSAGE_SIZE = 512
+};
 
-  typedef struct bench_image
-  {
-    mlim_grid grid;
-    void* owner;
-    void (*release)(void* owner); /* NULL: nothing to release */
-  } bench_image;
+typedef struct bench_image
+{
+  mlim_grid grid;
+  void* owner;
+  void (*release)(void* owner); /* NULL: nothing to release */
+} bench_image;
 
-  /* Reads a .vti file; arrays, labels and background are chosen as the filters choose them. Not 0:
+/* Reads a .vti file; arrays, labels and background are chosen as the filters choose them. Not 0:
    `message` says in one sentence what is wrong, and `out` is empty. */
-  int bench_image_read(const char* path, char message[BENCH_MESSAGE_SIZE], bench_image* out);
+int bench_image_read(const char* path, char message[BENCH_MESSAGE_SIZE], bench_image* out);
 
-  /* VTK's version; never NULL. */
-  const char* bench_image_version(void);
+/* VTK's version; never NULL. */
+const char* bench_image_version(void);
 
 #ifdef __cplusplus
 }

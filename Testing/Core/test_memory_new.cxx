@@ -2,12 +2,11 @@
 #include <cstdlib>
 #include <new>
 
-extern "C"
-{
-  int test_memory_fails(void);
-  void* __real_malloc(std::size_t size);
-  /* The sanitizer's library looks it up: the build hides symbols otherwise. */
-  __attribute__((visibility("default"))) const char* __lsan_default_suppressions();
+extern "C" {
+int test_memory_fails(void);
+void* __real_malloc(std::size_t size);
+/* The sanitizer's library looks it up: the build hides symbols otherwise. */
+__attribute__((visibility("default"))) const char* __lsan_default_suppressions();
 }
 
 // CGAL loses a new block of its containers when there is no memory to list it. A triangulation that
