@@ -12,7 +12,7 @@ enum
   MAX_STACK = 256, /* cells that one change may lead to */
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
-  SHAPE_SWEEPS = 2,
+  SHAPE_SWEEPS = 3,
   MAX_STEPS = 256 /* vertices that one failed vertex may lead to */
 };
 
@@ -272,8 +272,8 @@ static void gather_vertices(tidier* t)
    off their sheet. */
 enum
 {
-  DISK_COST = 16,
-  SHAPE_COST = 4
+  DISK_COST = 26,
+  SHAPE_COST = 12
 };
 
 static long cost(tidier* t)
@@ -425,8 +425,29 @@ static mlim_status mend_disks(tidier* t, size_t* changed)
   return MLIM_OK;
 }
 
-/* Bad triangles that the changes above have brought to light: another label for one of the two cells
-   may hide them again. */
+/* Tries another label for a cell, then for it and one neighbour of its label together. */
+static size_t mend_shape(tidier* t, int32_t id)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  t->part[0] = id;
+  t->part_count = 1;
+  size_t changed = mend_part(t);
+  for (int k = 0; k < 4 && changed == 0; ++k)
+  {
+    const int32_t other = complex->cells[id].neighbors[k];
+    if (complex->cells[other].label == complex->cells[id].label &&
+        !is_frozen(complex, &complex->cells[other]))
+    {
+      t->part[0] = id;
+      t->part[1] = other;
+      t->part_count = 2;
+      changed = mend_part(t);
+    }
+  }
+  return changed;
+}
+
+/* Bad triangles that the changes above have brought to light: other labels may hide them again. */
 static mlim_status mend_shapes(tidier* t, size_t* changed)
 {
   const mlim_complex* complex = &t->refinement->complex;
@@ -438,9 +459,7 @@ static mlim_status mend_shapes(tidier* t, size_t* changed)
     {
       continue;
     }
-    t->part[0] = (int32_t)c;
-    t->part_count = 1;
-    *changed += mend_part(t);
+    *changed += mend_shape(t, (int32_t)c);
     if (t->status != MLIM_OK)
     {
       return t->status;

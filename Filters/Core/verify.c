@@ -305,7 +305,9 @@ mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* con
   mlim_status status = look_for_components(verification, context, count);
   if (status == MLIM_OK && !verification->is_near && verification->round < FAR_ROUNDS)
   {
-    status = mlim_mesh_read(&verification->refinement->complex, context, &mesh);
+    status = mlim_refine_report(verification->refinement, context);
+    status = status != MLIM_OK ? status
+                               : mlim_mesh_read(&verification->refinement->complex, context, &mesh);
     if (status == MLIM_OK)
     {
       size_t far = 0;
