@@ -59,6 +59,17 @@ static inline size_t audit_count_bad_plain_edges(const audit* a)
   return count;
 }
 
+/* Regions meet on the extracted curves alone: an edge listed off them was settled afterwards. */
+static inline size_t audit_count_edges_off_curves(const audit* a)
+{
+  size_t count = 0;
+  for (size_t e = 0; e < a->mesh->edge_count; ++e)
+  {
+    count += a->mesh->edge_curves[e] < 0;
+  }
+  return count;
+}
+
 /* A curve edge is there once and has two triangles (a crease) or more. */
 static inline size_t audit_count_bad_curve_edges(const audit* a)
 {
@@ -486,6 +497,7 @@ static inline void audit_mesh(const mlim_field* field, const mlim_balls* balls,
   audit_partition_of(&a);
   CHECK_COUNT(audit_count_bad_plain_edges(&a), 0);
   CHECK_COUNT(audit_count_bad_curve_edges(&a), 0);
+  CHECK_COUNT(audit_count_edges_off_curves(&a), 0);
   CHECK_COUNT(audit_count_bare_vertices(&a), 0);
   CHECK_COUNT(audit_count_bad_links(&a), 0);
   CHECK_COUNT(mesh->certificate.disk_failure_count, 0);

@@ -238,6 +238,16 @@ class TestBrokenMeshes(unittest.TestCase):
         points, triangles, labels, edges, types = self.good
         self.expect("multiple_edges_off_curves", points, triangles, labels, edges[1:], types)
 
+    def test_line_off_the_extracted_curves(self):
+        surface = make_surface(*self.good)
+        curves = np.zeros(surface.GetNumberOfCells(), np.int32)
+        curves[0] = -1
+        array = numpy_to_vtk(curves, deep=True)
+        array.SetName("CurveId")
+        surface.GetCellData().AddArray(array)
+        found = failures(audit(self.image, surface, FACET_DISTANCE))
+        self.assertTrue(any("off_curve_share" in text for text in found), found)
+
     def test_curve_off_the_mesh(self):
         points, triangles, labels, edges, types = self.good
         edges = np.vstack([edges, [[0, len(points) - 1]]])

@@ -47,7 +47,7 @@ COLUMNS = (
     ("mesh s", "{:6.2f}", lambda f: f["mesh_seconds"]),
     ("audit s", "{:7.1f}", lambda f: f["audit_seconds"]),
     ("open", "{:4d}", lambda f: f["open_edges"] + f["incoherent_edges"]),
-    ("off c.", "{:6d}", lambda f: f["multiple_edges_off_curves"]),
+    ("off c.", "{:6d}", lambda f: f["lines_off_curves"]),
     ("2-tri", "{:5d}", lambda f: f["curve_edges_with_two_triangles"]),
     ("bad el.", "{:7d}", lambda f: f["degenerate"] + f["duplicate_triangles"]),
     ("normals", "{:7.3%}", lambda f: f["normal_share"]),

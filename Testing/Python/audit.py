@@ -24,6 +24,7 @@ LIMITS = {
     "min_normal_share": 0.999,
     "max_radius_edge_ratio": 1.0,
     "max_ratio_exception_share": 1e-4,
+    "max_off_curve_share": 0.0,
     "min_vertex_share": 0.99,
     "min_centre_share": 0.99,
     "min_crossing_share": 0.99,
@@ -32,7 +33,11 @@ LIMITS = {
 }
 # What is reached on noisy soft labels, where sheets of different labels come closer to each other than
 # the smallest distance of two vertices: a regression is worse than this, LIMITS are the target.
-NOISY_LIMITS = {"min_normal_share": 0.995, "max_ratio_exception_share": 2.5e-3}
+NOISY_LIMITS = {
+    "min_normal_share": 0.995,
+    "max_ratio_exception_share": 2.5e-3,
+    "max_off_curve_share": 0.04,
+}
 # Distance of a vertex from the interface that counts as "on it", in the smallest spacing.
 VERTEX_TOLERANCE = 0.01
 # Grid crossings are never asked to be nearer to the mesh than this, in the smallest spacing.
@@ -62,6 +67,7 @@ class Surface:
             self.points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
         self.triangles = cells_of_size(surface.GetPolys(), 3)
         self.curve_edges = polyline_edges(surface.GetLines())
+        self.line_curves = line_curves(surface)
         self.verts = np.zeros(0, np.int64)
         if surface.GetNumberOfVerts() > 0:
             self.verts = vtk_to_numpy(surface.GetVerts().GetConnectivityArray()).astype(np.int64)
@@ -142,6 +148,15 @@ def closed_regions(mesh):
     }
 
 
+def line_curves(surface):
+    """The curve of each line; a surface without the array has extracted curves only."""
+    curves = surface.GetCellData().GetArray("CurveId")
+    first, count = surface.GetNumberOfVerts(), surface.GetNumberOfLines()
+    if curves is None:
+        return np.zeros(count, np.int64)
+    return vtk_to_numpy(curves)[first : first + count]
+
+
 def curve_figures(mesh):
     edges, _ = half_edges(mesh.triangles)
     keys, counts = np.unique(edge_keys(edges, len(mesh.points)), return_counts=True)
@@ -153,6 +168,8 @@ def curve_figures(mesh):
     found[known] = counts[where[known]]
     return {
         "curve_edges": len(mesh.curve_edges),
+        "lines_off_curves": int((mesh.line_curves < 0).sum()),
+        "off_curve_share": float((mesh.line_curves < 0).mean()) if len(mesh.line_curves) else 0.0,
         "repeated_curve_edges": len(mesh.curve_edges) - len(curve_keys),
         "multiple_edges_off_curves": int((~np.isin(keys[counts >= 3], curve_keys)).sum()),
         "single_edges": int((counts == 1).sum()),
@@ -475,6 +492,7 @@ MUST_BE_ZERO = (
 BOUNDS = (
     ("normal_share", "min_normal_share", 1),
     ("ratio_exception_share", "max_ratio_exception_share", -1),
+    ("off_curve_share", "max_off_curve_share", -1),
     ("vertex_share_off_plateaus", "min_vertex_share", 1),
     ("centre_share", "min_centre_share", 1),
     ("crossing_share", "min_crossing_share", 1),
