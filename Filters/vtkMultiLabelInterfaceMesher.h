@@ -44,8 +44,11 @@
  *   `HiddenBallCount`: protecting balls left out because another one covers them;
  *   `RelabeledCellCount`: small cells whose label was changed to mend the topology below the
  *   smallest distance; `RelabeledRatioCount`: triangles above the ratio bound that this brought to
- *   light; `OffCurveEdgeCount`: lines with the CurveId -1, where three or more triangles meet off
- *   the extracted curves; `LostCurveEdgeCount`: neighbours on a curve that no edge joins.
+ *   light; `ContactCount`: verts with the CurveId -2, at which sheets meet that touch or are nearer to
+ *   each other than the smallest distance; `ContactEdgeCount`: lines with the CurveId -2, edges of
+ *   three or more triangles at contacts; `OffCurveEdgeCount`: lines with the CurveId -1, where three
+ *   or more triangles meet off the extracted curves and contacts; `LostCurveEdgeCount`: neighbours on
+ *   a curve that no edge joins.
  * - Certificate: `CertifiedLabelCount`, `LostLabelCount`, `CertifiedComponentCount`,
  *   `LostComponentCount`, `DiskFailureCount`, `OpenEdgeCount`, `GridCrossingCount`,
  *   `FarCrossingCount`, `MaxCrossingDistance`, `MaxVolumeDifference`. The latter compares each

@@ -148,10 +148,11 @@ void WriteSurface(
     patches->InsertNextValue(patch);
     curves->InsertNextValue(curve);
   };
+  const size_t firstContact = mesh.junction_count - mesh.contact_count;
   for (size_t j : shown.Junctions)
   {
     verts->InsertNextCell({ shown.NewId(mesh.junctions[j]) });
-    addCell(-1, -1, -1, -1);
+    addCell(-1, -1, -1, j < firstContact ? MLIM_JUNCTION : MLIM_CONTACT);
   }
   for (size_t e : shown.Edges)
   {
@@ -190,7 +191,8 @@ void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
   WriteCount("CurveEdgeCount", mesh.edge_count, field);
   WriteCount("JunctionCount", mesh.junction_count, field);
   const std::vector<int32_t> ids(mesh.edge_curves, mesh.edge_curves + mesh.edge_count);
-  WriteCount("CurveCount", ids.empty() ? 0 : 1 + *std::max_element(ids.begin(), ids.end()), field);
+  const int32_t lastCurve = ids.empty() ? -1 : *std::max_element(ids.begin(), ids.end());
+  WriteCount("CurveCount", std::max(lastCurve, -1) + 1, field);
   vtkNew<vtkDoubleArray> volumes;
   volumes->SetName("LabelVolumes");
   for (size_t label = 0; label < mesh.label_count; ++label)
@@ -209,6 +211,8 @@ void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
   WriteCount("UnresolvedRatioCount", report.unresolved_ratio_count, field);
   WriteCount("UnresolvedBallRatioCount", report.unresolved_ball_ratio_count, field);
   WriteCount("HiddenBallCount", report.hidden_ball_count, field);
+  WriteCount("ContactCount", mesh.contact_count, field);
+  WriteCount("ContactEdgeCount", report.contact_edge_count, field);
   WriteCount("OffCurveEdgeCount", report.off_curve_edge_count, field);
   WriteCount("LostCurveEdgeCount", report.lost_curve_edge_count, field);
   WriteCount("RelabeledCellCount", report.relabeled_cell_count, field);

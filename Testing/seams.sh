@@ -25,8 +25,8 @@ order='
 4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         radius_map span balls
 5 triangulation delaunay
-6 criteria      complex criteria disk
-7 refinement    queue seeds refine tidy
+6 criteria      complex sides criteria disk
+7 refinement    queue seeds refine tidy spots
 8 products      volumes edges nearest mesh quality certificate
 9 whole         verify build
 '

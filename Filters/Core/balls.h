@@ -1,4 +1,4 @@
-/* Protecting balls: the conditions they have to satisfy, stated and tested here, and splitting.
+/* Protecting balls: the conditions they have to satisfy, stated and tested here, and contacts.
    Dey, Janoos, Levine, section 3.4. */
 #ifndef mlim_balls_h
 #define mlim_balls_h
@@ -39,21 +39,18 @@ mlim_status mlim_balls_check(const mlim_curves* curves, const mlim_balls* balls,
 mlim_status mlim_balls_examine(const mlim_curves* curves, const mlim_balls* balls,
   const mlim_options* options, mlim_ball_report report, void* user);
 
-/* Moves a new centre onto the tie of the labels. */
-typedef void (*mlim_ball_project)(
-  void* user, const int32_t* labels, size_t label_count, double center[3]);
-
-typedef struct mlim_ball_split
+/* A ball over a spot where sheets touch, or are nearer than can be resolved. */
+typedef struct mlim_contact
 {
-  const unsigned char* is_marked; /* borrowed; per ball: not 0 splits it */
-  mlim_ball_project project;      /* NULL: new centres stay on the chords */
-  void* user;
-} mlim_ball_split;
+  double center[3];
+  double radius;
+  int32_t set; /* labels that meet there */
+} mlim_contact;
 
-/* Halves the radii of marked balls and covers the edges round them anew, along the chords. The
-   balls that stay keep their centres; junctions keep their numbers. Radii end at half of
-   smallest_distance. */
-mlim_status mlim_balls_split(const mlim_balls* balls, const mlim_options* options,
-  const mlim_ball_split* split, mlim_context* context, mlim_balls* out);
+/* Puts contacts into a cover. A contact takes the place of the balls whose centres it holds: it has
+   their labels, and their curves go on to it, with a ball between where there is a gap. Contacts may
+   overlap balls that are not their neighbours. `sets`: of the contacts. */
+mlim_status mlim_balls_contract(const mlim_balls* balls, const mlim_contact* contacts, size_t count,
+  const mlim_sets* sets, mlim_context* context, mlim_balls* out);
 
 #endif

@@ -87,6 +87,12 @@ static mlim_status list_neighbours(const mlim_balls* balls, size_t** starts, int
   return MLIM_OK;
 }
 
+/* Contacts may overlap any ball. */
+static int is_contact(const mlim_balls* balls, size_t ball)
+{
+  return balls->ball_curves[ball] == MLIM_CONTACT;
+}
+
 static mlim_status examine_others(const examination* work)
 {
   const mlim_balls* balls = work->balls;
@@ -112,7 +118,8 @@ static mlim_status examine_others(const examination* work)
     {
       const double reach = balls->radii[i] + balls->radii[j];
       const double d = center_distance(balls, (int32_t)i, j);
-      int is_neighbour = reach < (1 - DISJOINT_MARGIN) * d;
+      int is_neighbour =
+        reach < (1 - DISJOINT_MARGIN) * d || is_contact(balls, i) || is_contact(balls, (size_t)j);
       for (size_t n = starts[i]; n < starts[i + 1] && !is_neighbour; ++n)
       {
         is_neighbour = neighbours[n] == j;

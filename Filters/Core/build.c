@@ -6,6 +6,7 @@
 #include "quality.h"
 #include "refine.h"
 #include "seeds.h"
+#include "spots.h"
 #include "status.h"
 #include "tidy.h"
 #include "verify.h"
@@ -108,7 +109,7 @@ static mlim_status start(build* b)
     "The protecting balls hide each other; no ball may hold the centre of another one.");
 }
 
-static mlim_status refine_topology(build* b)
+static mlim_status refine_from_balls(build* b)
 {
   mlim_status status = start(b);
   if (status == MLIM_OK)
@@ -117,6 +118,29 @@ static mlim_status refine_topology(build* b)
   }
   return status == MLIM_OK ? mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context)
                            : status;
+}
+
+/* Topology first, while the triangulation is small: what cannot be resolved is covered by contacts, and
+   the triangulation made anew from the balls. */
+static mlim_status refine_topology(build* b)
+{
+  enum
+  {
+    MAX_ROUNDS = 2 /* a third one finds a fifth of the first, and changes little */
+  };
+  mlim_status status = refine_from_balls(b);
+  size_t count = 1;
+  for (int round = 0; round < MAX_ROUNDS && status == MLIM_OK && count > 0; ++round)
+  {
+    mlim_balls balls;
+    status = mlim_spots_cover(&b->refinement, b->used_balls, b->context, &balls, &count);
+    if (status == MLIM_OK && count > 0)
+    {
+      take_balls(b, &balls);
+      status = refine_from_balls(b);
+    }
+  }
+  return status;
 }
 
 static mlim_status refine_all(build* b)

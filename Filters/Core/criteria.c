@@ -97,8 +97,7 @@ static mlim_badness judge_topology(
   return facet->is_multiple ? MLIM_BAD_CROSSINGS : is_foreign ? MLIM_BAD_SHEET : MLIM_BAD_NONE;
 }
 
-/* A region that would lose too much volume allows a part of the distance only. */
-static double distance_bound(
+double mlim_criteria_distance(
   const mlim_complex* complex, const mlim_options* options, const mlim_sheet* sheet)
 {
   const double low = complex->distance_shares[sheet->low];
@@ -145,7 +144,7 @@ mlim_verdict mlim_criteria_judge(
     double bound;
   } rows[] = {
     { MLIM_BAD_SIZE, ball_radius(&t, facet->crossing), options->facet_size },
-    { MLIM_BAD_DISTANCE, t.height, distance_bound(complex, options, &facet->sheet) },
+    { MLIM_BAD_DISTANCE, t.height, mlim_criteria_distance(complex, options, &facet->sheet) },
     { MLIM_BAD_RATIO, verdict.radius_edge_ratio, options->facet_radius_edge_ratio },
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
@@ -158,7 +157,7 @@ mlim_verdict mlim_criteria_judge(
     }
   }
   if ((verdict.badness == MLIM_BAD_NONE || verdict.badness == MLIM_BAD_RATIO) && t.heaviest > 0 &&
-      is_off_sheet(complex, facet, &t, distance_bound(complex, options, &facet->sheet)))
+      is_off_sheet(complex, facet, &t, mlim_criteria_distance(complex, options, &facet->sheet)))
   {
     verdict.badness = MLIM_BAD_DISTANCE;
     verdict.excess = 1;

@@ -28,6 +28,11 @@ typedef struct mlim_verdict
 mlim_verdict mlim_criteria_judge(
   const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet);
 
+/* The bound on a crossing's height above its facet: facet_distance, or the part of it that a region
+   allows which would lose too much volume. */
+double mlim_criteria_distance(
+  const mlim_complex* complex, const mlim_options* options, const mlim_sheet* sheet);
+
 /* Whether the facet's crossing may be inserted for that reason: outside the protecting balls and no
    closer to another vertex than the smallest distance. Quality gives way near balls. */
 int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* options,

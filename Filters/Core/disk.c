@@ -208,8 +208,34 @@ static int is_curve_neighbor(
   return 0;
 }
 
+static int is_contact(const mlim_complex* complex, int32_t vertex)
+{
+  const int32_t ball = complex->vertices[vertex].ball;
+  return ball >= 0 && complex->balls->ball_curves[ball] == MLIM_CONTACT;
+}
+
+/* Neighbours on curves that are no contacts: a curve may end before a contact. */
+static size_t count_neighbors(
+  const mlim_complex* complex, const mlim_ball_links* links, int32_t ball)
+{
+  size_t count = 0;
+  for (size_t k = links->offsets[ball]; k < links->offsets[ball + 1]; ++k)
+  {
+    count += complex->balls->ball_curves[links->neighbors[k]] != MLIM_CONTACT;
+  }
+  return count;
+}
+
+/* Sheets may meet at an edge between two balls of which one is a contact. */
+static int is_contact_edge(const mlim_complex* complex, int32_t a, int32_t b)
+{
+  return complex->vertices[a].ball >= 0 && complex->vertices[b].ball >= 0 &&
+         (is_contact(complex, a) || is_contact(complex, b));
+}
+
 /* A sheet's vertex has one cycle for its link. At a ball the link's branching points are exactly its
-   neighbours on curves, each of them is there, and every part of the link hangs on one. */
+   neighbours on curves, each of them is there, and every part of the link hangs on one. At a contact
+   sheets touch: its link may have any number of parts, and branch at any ball. */
 static int holds(
   const mlim_complex* complex, const mlim_ball_links* links, int32_t vertex, mlim_star* star)
 {
@@ -221,8 +247,9 @@ static int holds(
   for (size_t k = 0; k < star->link_count; ++k)
   {
     const int is_neighbor = is_curve_neighbor(complex, links, ball, star->link[k]);
-    found += (size_t)is_neighbor;
-    if (is_neighbor ? degree[k] < 2 : degree[k] != 2)
+    found += (size_t)(is_neighbor && !is_contact(complex, star->link[k]));
+    const int may_branch = is_neighbor || is_contact_edge(complex, vertex, star->link[k]);
+    if (may_branch ? degree[k] < 2 : degree[k] != 2)
     {
       return 0;
     }
@@ -231,6 +258,10 @@ static int holds(
   if (ball < 0)
   {
     return part_count == 1;
+  }
+  if (is_contact(complex, vertex))
+  {
+    return 1;
   }
   size_t anchored = 0;
   for (size_t k = 0; k < star->link_count; ++k)
@@ -243,11 +274,12 @@ static int holds(
     for (size_t j = 0; j < star->link_count && !has_neighbor; ++j)
     {
       has_neighbor = root_of(star->parents, (int32_t)j) == (int32_t)k &&
-                     is_curve_neighbor(complex, links, ball, star->link[j]);
+                     (is_contact(complex, star->link[j]) ||
+                       is_curve_neighbor(complex, links, ball, star->link[j]));
     }
     anchored += (size_t)has_neighbor;
   }
-  return anchored == part_count && found == links->offsets[ball + 1] - links->offsets[ball];
+  return anchored == part_count && found == count_neighbors(complex, links, ball);
 }
 
 mlim_status mlim_disk_check(mlim_complex* complex, const mlim_ball_links* links, int32_t vertex,

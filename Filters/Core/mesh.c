@@ -80,6 +80,20 @@ static size_t count_triangles(const mlim_complex* complex)
   return count;
 }
 
+static void read_junctions(reader* r, const int32_t* vertex_of_ball, int32_t kind)
+{
+  const mlim_balls* balls = r->complex->balls;
+  mlim_mesh* mesh = r->mesh;
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    const int32_t vertex = r->vertex_of[vertex_of_ball[b]];
+    if (balls->ball_curves[b] == kind && vertex >= 0)
+    {
+      mesh->junctions[mesh->junction_count++] = vertex;
+    }
+  }
+}
+
 /* Balls that no triangle has leave no trace: the mesh has no unused vertex. */
 static void read_curves(reader* r, const int32_t* vertex_of_ball)
 {
@@ -96,14 +110,10 @@ static void read_curves(reader* r, const int32_t* vertex_of_ball)
       mesh->edge_curves[mesh->edge_count++] = balls->edge_curves[e];
     }
   }
-  for (size_t b = 0; b < balls->ball_count; ++b)
-  {
-    const int32_t vertex = r->vertex_of[vertex_of_ball[b]];
-    if (balls->ball_curves[b] < 0 && vertex >= 0)
-    {
-      mesh->junctions[mesh->junction_count++] = vertex;
-    }
-  }
+  read_junctions(r, vertex_of_ball, MLIM_JUNCTION);
+  const size_t junctions = mesh->junction_count;
+  read_junctions(r, vertex_of_ball, MLIM_CONTACT);
+  mesh->contact_count = mesh->junction_count - junctions;
 }
 
 /* Number of labels at a vertex, the outside being one, and whether it lies on the box. */

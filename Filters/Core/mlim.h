@@ -212,13 +212,20 @@ void mlim_curves_free(mlim_curves* curves);
 
 /* ---- balls --------------------------------------------------------------------------------- */
 
+enum
+{
+  MLIM_JUNCTION = -1, /* in the place of a ball's curve: it is a junction's */
+  MLIM_CONTACT = -2   /* it is a contact's: one ball over a spot where sheets touch or are nearer to
+                         each other than can be meshed. Only refinement makes them. */
+};
+
 /* Protecting balls: junction balls first, then those of each curve in order. */
 typedef struct mlim_balls
 {
   size_t ball_count;
   double* centers;      /* 3 each */
   double* radii;        /* > 0 */
-  int32_t* ball_curves; /* curve of each ball; -1 for a junction's */
+  int32_t* ball_curves; /* curve of each ball, MLIM_JUNCTION or MLIM_CONTACT */
   int32_t* ball_sets;   /* index into sets */
   size_t edge_count;    /* pairs of neighbours on a curve */
   int32_t* edges;       /* 2 each */
@@ -262,7 +269,9 @@ typedef struct mlim_report
   size_t unresolved_ball_ratio_count; /* with a ball vertex: quality gives way near balls */
   size_t hidden_ball_count;           /* balls left out because another one covers them */
   size_t lost_curve_edge_count;       /* neighbours on a curve between which the mesh has no edge */
-  size_t off_curve_edge_count;        /* edges of three or more triangles on no extracted curve */
+  size_t contact_edge_count;          /* edges of three or more triangles between a contact and a
+                                         ball, on no extracted curve */
+  size_t off_curve_edge_count;        /* all others on no extracted curve */
   size_t relabeled_cell_count;        /* to mend topology below the smallest distance */
   double max_radius_edge_ratio;       /* triangles without a ball vertex */
   double mean_radius_edge_ratio;      /* all triangles */
@@ -295,9 +304,10 @@ typedef struct mlim_mesh
   size_t patch_count;
   size_t edge_count;    /* curve edges, then those of three or more triangles off the curves */
   int32_t* edges;       /* 2 vertices each */
-  int32_t* edge_curves; /* -1 off the curves */
+  int32_t* edge_curves; /* off the curves MLIM_CONTACT at a contact, else -1 */
   size_t junction_count;
-  int32_t* junctions; /* vertices */
+  int32_t* junctions;   /* vertices */
+  size_t contact_count; /* the last of the junctions are contacts */
   size_t label_count;
   double* volumes; /* per label: enclosed by its triangles; 0 for the outside's */
   mlim_report report;

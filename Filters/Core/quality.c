@@ -103,7 +103,13 @@ static int32_t* sort_curve_edges(const mlim_mesh* mesh)
   return pairs;
 }
 
-static int append_edge(mlim_mesh* mesh, size_t capacity[2], int32_t lower, int32_t upper)
+static int is_ball(const mlim_mesh* mesh, int32_t vertex)
+{
+  return mesh->node_types[vertex] % MLIM_NODE_ON_BOX > MLIM_NODE_INTERFACE;
+}
+
+static int append_edge(
+  mlim_mesh* mesh, const unsigned char* is_contact, size_t capacity[2], const int32_t pair[2])
 {
   const size_t e = mesh->edge_count;
   if (mlim_reserve(&mesh->edges, &capacity[0], 2 * e + 2, sizeof *mesh->edges) ||
@@ -111,11 +117,13 @@ static int append_edge(mlim_mesh* mesh, size_t capacity[2], int32_t lower, int32
   {
     return 1;
   }
-  mesh->edges[2 * e] = lower;
-  mesh->edges[2 * e + 1] = upper;
-  mesh->edge_curves[e] = -1;
+  const int is_at_contact = (is_contact[pair[0]] || is_contact[pair[1]]) &&
+                            is_ball(mesh, pair[0]) && is_ball(mesh, pair[1]);
+  mesh->edges[2 * e] = pair[0];
+  mesh->edges[2 * e + 1] = pair[1];
+  mesh->edge_curves[e] = is_at_contact ? MLIM_CONTACT : -1;
   ++mesh->edge_count;
-  ++mesh->report.off_curve_edge_count;
+  ++*(is_at_contact ? &mesh->report.contact_edge_count : &mesh->report.off_curve_edge_count);
   return 0;
 }
 
@@ -151,6 +159,17 @@ static void drop_edges(mlim_mesh* mesh, const mlim_edges* edges)
   mesh->edge_count = kept;
 }
 
+static unsigned char* mark_contacts(const mlim_mesh* mesh)
+{
+  unsigned char* is_contact = mlim_allocate_zeroed(mesh->vertex_count, 1);
+  const size_t first = mesh->junction_count - mesh->contact_count;
+  for (size_t j = first; is_contact != NULL && j < mesh->junction_count; ++j)
+  {
+    is_contact[mesh->junctions[j]] = 1;
+  }
+  return is_contact;
+}
+
 mlim_status mlim_quality_settle_edges(
   mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context)
 {
@@ -158,7 +177,8 @@ mlim_status mlim_quality_settle_edges(
   const size_t curve_edges = mesh->edge_count;
   size_t capacity[2] = { 2 * curve_edges, curve_edges };
   int32_t* pairs = sort_curve_edges(mesh);
-  int has_failed = pairs == NULL;
+  unsigned char* is_contact = mark_contacts(mesh);
+  int has_failed = pairs == NULL || is_contact == NULL;
   for (size_t v = 0; v < mesh->vertex_count && !has_failed; ++v)
   {
     size_t end;
@@ -170,11 +190,12 @@ mlim_status mlim_quality_settle_edges(
       if (end - first > 2 && (curve_edges == 0 || bsearch(pair, pairs, curve_edges,
                                                     2 * sizeof *pairs, compare_pairs) == NULL))
       {
-        has_failed = append_edge(mesh, capacity, pair[0], pair[1]);
+        has_failed = append_edge(mesh, is_contact, capacity, pair);
       }
     }
   }
   mlim_release(pairs);
+  mlim_release(is_contact);
   return has_failed ? mlim_fail_memory(context, "the mesh's curve edges") : MLIM_OK;
 }
 

@@ -9,7 +9,8 @@ mlim_status mlim_quality_find_patches(
   mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
 
 /* Drops curve edges that no triangle has, and appends the edges of three or more triangles that are not
-   among them, and counts both: what is finer than the smallest distance may leave a few. */
+   among them: sheets that touch at a contact, and a few where the data are finer than the smallest
+   distance. Counts each kind. */
 mlim_status mlim_quality_settle_edges(
   mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
 

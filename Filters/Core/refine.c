@@ -73,6 +73,28 @@ static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mli
   return status;
 }
 
+/* A ball whose centre is nearer in power to another one owns no part of space round it, and the next
+   point could hide it. The other one is a neighbour then: power cells are convex. */
+static void mark_held(const mlim_complex* complex, unsigned char* is_hidden, size_t* count)
+{
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    const mlim_cell* cell = &complex->cells[c];
+    for (int pair = 0; pair < 16 && cell->vertices[0] >= 0; ++pair)
+    {
+      const mlim_vertex* held = &complex->vertices[cell->vertices[pair & 3]];
+      const mlim_vertex* by = &complex->vertices[cell->vertices[pair >> 2]];
+      if (held->kind == MLIM_VERTEX_BALL && by->kind == MLIM_VERTEX_BALL && held != by &&
+          !is_hidden[held->ball] && !is_hidden[by->ball] &&
+          mlim_distance_squared(held->point, by->point) - by->weight <= -held->weight)
+      {
+        is_hidden[held->ball] = 1;
+        ++*count;
+      }
+    }
+  }
+}
+
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
   const mlim_balls* balls, const mlim_options* options, mlim_context* context,
   unsigned char* is_hidden, size_t* hidden_count)
@@ -95,6 +117,7 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   if (status == MLIM_OK && *hidden_count == 0)
   {
     status = mlim_complex_record_all(&r->complex, context);
+    mark_held(&r->complex, is_hidden, hidden_count);
   }
   if (status != MLIM_OK)
   {
@@ -134,6 +157,18 @@ static int enqueue(mlim_refinement* r, int32_t record)
   }
   return mlim_queue_push(
     &r->queue, mlim_queue_bin_of(verdict.badness, verdict.excess), &r->complex, record);
+}
+
+mlim_status mlim_refine_ask(
+  mlim_refinement* refinement, int32_t record, mlim_context* context, int* is_taken)
+{
+  const mlim_complex* complex = &refinement->complex;
+  *is_taken = mlim_criteria_may_insert(
+    complex, refinement->options, &complex->facets[record], MLIM_BAD_DISTANCE);
+  return *is_taken && mlim_queue_push(&refinement->queue, mlim_queue_bin_of(MLIM_BAD_DISTANCE, 1),
+                        complex, record)
+           ? mlim_fail_memory(context, "the queue of facets")
+           : MLIM_OK;
 }
 
 static mlim_status enqueue_all(mlim_refinement* r, mlim_context* context)

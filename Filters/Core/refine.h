@@ -37,6 +37,11 @@ void mlim_refine_free(mlim_refinement* refinement);
    all is valid. */
 mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_context* context);
 
+/* Asks for the crossing of a facet that satisfies the criteria, at the next run. *is_taken: whether it
+   may be inserted at all. */
+mlim_status mlim_refine_ask(
+  mlim_refinement* refinement, int32_t record, mlim_context* context, int* is_taken);
+
 /* Tells the host how far refinement is. */
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context);
 

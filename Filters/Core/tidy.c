@@ -1,6 +1,7 @@
 #include "tidy.h"
 
 #include "memory.h"
+#include "sides.h"
 #include "status.h"
 #include "triangle.h"
 
@@ -13,7 +14,8 @@ enum
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
   SHAPE_SWEEPS = 3,
-  MAX_STEPS = 256 /* vertices that one failed vertex may lead to */
+  LOOK_EVERY = 65536, /* cells between two looks at the host */
+  MAX_STEPS = 256     /* vertices that one failed vertex may lead to */
 };
 
 /* ---- strays: facets with a vertex that is not on their sheet ---- */
@@ -88,6 +90,21 @@ static int cell_misshapen(const mlim_refinement* r, int32_t id)
   {
     const int32_t other = r->complex.cells[cell->neighbors[k]].label;
     count += cell->label != other && is_misshapen(r, cell, k);
+  }
+  return count;
+}
+
+/* Facets of a cell whose two labels are not there on their two sides. */
+static int cell_unseen(const mlim_refinement* r, int32_t id)
+{
+  const mlim_complex* complex = &r->complex;
+  const mlim_cell* cell = &complex->cells[id];
+  int count = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t other = complex->cells[cell->neighbors[k]].label;
+    count += cell->label != other &&
+             !mlim_sides_are_seen(complex, id, k, cell->label, other, r->options->facet_distance);
   }
   return count;
 }
@@ -196,6 +213,8 @@ typedef struct tidier
   int32_t seen[MAX_SEEN];
   size_t seen_count;
   int32_t pending[MAX_STEPS];
+  int32_t* bad; /* cells with a bad triangle */
+  size_t bad_count, bad_capacity;
 } tidier;
 
 static int fails(tidier* t, int32_t vertex)
@@ -268,12 +287,13 @@ static void gather_vertices(tidier* t)
   }
 }
 
-/* A failed disk weighs more than bad triangles, these more than strays: the latter only lie a little
-   off their sheet. */
+/* A failed disk weighs more than bad triangles, these more than triangles with a wrong side, and all
+   more than strays: the latter only lie a little off their sheet. */
 enum
 {
-  DISK_COST = 26,
-  SHAPE_COST = 12
+  DISK_COST = 40,
+  SHAPE_COST = 26,
+  SIDE_COST = 20
 };
 
 static long cost(tidier* t)
@@ -288,6 +308,7 @@ static long cost(tidier* t)
     const int32_t id = t->part[p];
     sum += cell_strays(&t->refinement->complex, id, t->refinement->complex.cells[id].label);
     sum += SHAPE_COST * cell_misshapen(t->refinement, id);
+    sum += SIDE_COST * cell_unseen(t->refinement, id);
   }
   return sum;
 }
@@ -447,25 +468,49 @@ static size_t mend_shape(tidier* t, int32_t id)
   return changed;
 }
 
-/* Bad triangles that the changes above have brought to light: other labels may hide them again. */
-static mlim_status mend_shapes(tidier* t, size_t* changed)
+static int is_bad(const tidier* t, int32_t id)
+{
+  const mlim_cell* cell = &t->refinement->complex.cells[id];
+  return cell->vertices[0] >= 0 && !is_frozen(&t->refinement->complex, cell) &&
+         (cell_misshapen(t->refinement, id) > 0 || cell_unseen(t->refinement, id) > 0);
+}
+
+/* Lists the cells with a bad triangle. */
+static mlim_status find_bad(tidier* t)
 {
   const mlim_complex* complex = &t->refinement->complex;
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  mlim_status status = MLIM_OK;
+  for (size_t c = 0; c < complex->cell_count && status == MLIM_OK; ++c)
   {
-    const mlim_cell* cell = &complex->cells[c];
-    if (cell->vertices[0] < 0 || is_frozen(complex, cell) ||
-        cell_misshapen(t->refinement, (int32_t)c) == 0)
+    if (is_bad(t, (int32_t)c))
     {
-      continue;
+      if (mlim_reserve(&t->bad, &t->bad_capacity, t->bad_count + 1, sizeof *t->bad))
+      {
+        return mlim_fail_memory(t->context, "mending the topology");
+      }
+      t->bad[t->bad_count++] = (int32_t)c;
     }
-    *changed += mend_shape(t, (int32_t)c);
-    if (t->status != MLIM_OK)
+    if (c % LOOK_EVERY == 0)
     {
-      return t->status;
+      status = mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, 0);
     }
   }
-  return MLIM_OK;
+  return status;
+}
+
+/* Bad triangles, some of which the changes above have brought to light: other labels may hide them. */
+static mlim_status mend_shapes(tidier* t, size_t* changed)
+{
+  mlim_status status = find_bad(t);
+  for (int sweep = 0; sweep < SHAPE_SWEEPS && status == MLIM_OK; ++sweep)
+  {
+    for (size_t k = 0; k < t->bad_count && status == MLIM_OK; ++k)
+    {
+      *changed += is_bad(t, t->bad[k]) ? mend_shape(t, t->bad[k]) : 0;
+      status = t->status;
+    }
+  }
+  return status;
 }
 
 mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_context* context, size_t* count)
@@ -480,13 +525,11 @@ mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_context* context, si
   t->context = context;
   size_t changed = 0;
   mlim_status status = mend_disks(t, &changed);
-  for (int sweep = 0; sweep < SHAPE_SWEEPS && status == MLIM_OK; ++sweep)
-  {
-    status = mend_shapes(t, &changed);
-  }
+  status = status == MLIM_OK ? mend_shapes(t, &changed) : status;
   *count += changed;
   mlim_star_free(&t->star);
   mlim_star_free(&t->check);
+  mlim_release(t->bad);
   mlim_release(t);
   return status;
 }

@@ -6,6 +6,7 @@
 #include "mesh.h"
 #include "nearest.h"
 #include "seeds.h"
+#include "sides.h"
 #include "status.h"
 #include "vector.h"
 #include "volumes.h"
@@ -28,7 +29,8 @@ static const double FAR_SHARE = 0.005;
 
 enum
 {
-  FAR_ROUNDS = 4 /* the later ones find nearly nothing */
+  FAR_ROUNDS = 4,    /* the later ones find nearly nothing */
+  LOOK_EVERY = 65536 /* facets between two reports */
 };
 
 /* ---- far crossings ---- */
@@ -219,6 +221,39 @@ static mlim_status look_for_far(
   return status;
 }
 
+/* ---- facets off their interface ---- */
+
+/* The height of the crossing says nothing about the rest of the facet: a bump of the interface may
+   leave it between two places of one label. */
+static mlim_status look_for_sides(const mlim_verification* v, mlim_context* context, size_t* count)
+{
+  mlim_refinement* r = v->refinement;
+  const mlim_complex* complex = &r->complex;
+  mlim_status status = MLIM_OK;
+  for (size_t f = 1; f < complex->facet_count && status == MLIM_OK; ++f)
+  {
+    const mlim_facet* facet = &complex->facets[f];
+    if (facet->is_alive)
+    {
+      const mlim_cell* cell = &complex->cells[facet->cell];
+      const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
+      int is_taken = 0;
+      if (cell->label != other &&
+          !mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label, other,
+            mlim_criteria_distance(complex, r->options, &facet->sheet)))
+      {
+        status = mlim_refine_ask(r, (int32_t)f, context, &is_taken);
+        *count += (size_t)is_taken;
+      }
+    }
+    if (f % LOOK_EVERY == 0 && status == MLIM_OK)
+    {
+      status = mlim_refine_report(r, context);
+    }
+  }
+  return status;
+}
+
 /* ---- lost volume ---- */
 
 static mlim_status look_for_volume(const mlim_verification* v, mlim_context* context, size_t* count)
@@ -316,6 +351,10 @@ mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* con
       *count += far;
     }
     mlim_mesh_free(&mesh);
+  }
+  if (status == MLIM_OK)
+  {
+    status = look_for_sides(verification, context, count);
   }
   if (status == MLIM_OK && verification->refinement->options->volume_tolerance > 0)
   {

@@ -59,13 +59,14 @@ static inline size_t audit_count_bad_plain_edges(const audit* a)
   return count;
 }
 
-/* Regions meet on the extracted curves alone: an edge listed off them was settled afterwards. */
+/* Regions meet on the extracted curves and at contacts alone: an edge listed off them was settled
+   afterwards. */
 static inline size_t audit_count_edges_off_curves(const audit* a)
 {
   size_t count = 0;
   for (size_t e = 0; e < a->mesh->edge_count; ++e)
   {
-    count += a->mesh->edge_curves[e] < 0;
+    count += a->mesh->edge_curves[e] < 0 && a->mesh->edge_curves[e] != MLIM_CONTACT;
   }
   return count;
 }
@@ -116,8 +117,20 @@ static inline int audit_root(const int* parent, int k)
   return k;
 }
 
+static inline int audit_is_contact(const audit* a, int32_t vertex)
+{
+  const mlim_mesh* mesh = a->mesh;
+  size_t j = mesh->junction_count - mesh->contact_count;
+  while (j < mesh->junction_count && mesh->junctions[j] != vertex)
+  {
+    ++j;
+  }
+  return j < mesh->junction_count;
+}
+
 /* The link of a vertex on a patch is one cycle. On a curve it branches at the curve's two
-   neighbours, and at a junction at all of them, and every part of it hangs on one. */
+   neighbours, and at a junction at all of them, and every part of it hangs on one. Curves may end next
+   to a contact, where any number of sheets may touch. */
 static inline int audit_is_disk(const audit* a, int32_t vertex)
 {
   int32_t link[AUDIT_MAX_LINK];
@@ -147,6 +160,7 @@ static inline int audit_is_disk(const audit* a, int32_t vertex)
   }
   int branches = 0;
   int parts = 0;
+  int contacts = 0;
   int has_branch[AUDIT_MAX_LINK] = { 0 };
   for (int k = 0; k < count; ++k)
   {
@@ -155,8 +169,14 @@ static inline int audit_is_disk(const audit* a, int32_t vertex)
     {
       return 0;
     }
+    const int is_contact = audit_is_contact(a, link[k]);
     branches += is_branch;
-    has_branch[audit_root(parent, k)] |= is_branch;
+    contacts += is_contact;
+    has_branch[audit_root(parent, k)] |= is_branch || is_contact;
+  }
+  if (audit_is_contact(a, vertex))
+  {
+    return count > 0;
   }
   for (int k = 0; k < count; ++k)
   {
@@ -168,6 +188,7 @@ static inline int audit_is_disk(const audit* a, int32_t vertex)
   }
   const int32_t type = a->mesh->node_types[vertex] % MLIM_NODE_ON_BOX;
   return type == MLIM_NODE_INTERFACE ? parts == 1 && branches == 0
+         : contacts > 0              ? 1
          : type == MLIM_NODE_CURVE   ? branches == 2
                                      : type == MLIM_NODE_JUNCTION && branches > 0;
 }

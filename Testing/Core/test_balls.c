@@ -1,5 +1,6 @@
 /* The balls' conditions hold on networks of every kind. */
 #include "scenes.h"
+#include "vector.h"
 
 static double three_sectors(const double at[3], int label)
 {
@@ -70,6 +71,111 @@ static size_t fault_count(const mlim_ball_counts* counts)
          counts->stray_count + counts->short_count;
 }
 
+/* Parts of the cover: balls that edges connect. */
+static size_t part_count(const mlim_balls* balls)
+{
+  int32_t* parts = mlim_allocate(balls->ball_count, sizeof(int32_t));
+  size_t count = 0;
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    parts[b] = (int32_t)b;
+  }
+  int has_changed = 1;
+  while (has_changed)
+  {
+    has_changed = 0;
+    for (size_t e = 0; e < balls->edge_count; ++e)
+    {
+      int32_t* a = parts + balls->edges[2 * e];
+      int32_t* b = parts + balls->edges[2 * e + 1];
+      has_changed = has_changed || *a != *b;
+      *a = *b = *a < *b ? *a : *b;
+    }
+  }
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    count += parts[b] == (int32_t)b;
+  }
+  mlim_release(parts);
+  return count;
+}
+
+/* Neighbours that do not overlap. */
+static size_t gap_count(const mlim_balls* balls)
+{
+  size_t count = 0;
+  for (size_t e = 0; e < balls->edge_count; ++e)
+  {
+    const size_t a = (size_t)balls->edges[2 * e];
+    const size_t b = (size_t)balls->edges[2 * e + 1];
+    count += mlim_distance(balls->centers + 3 * a, balls->centers + 3 * b) >=
+             balls->radii[a] + balls->radii[b];
+  }
+  return count;
+}
+
+static int has_label(const mlim_sets* sets, int32_t set, int32_t label)
+{
+  int found = 0;
+  for (size_t k = sets->offsets[set]; k < sets->offsets[set + 1]; ++k)
+  {
+    found = found || sets->labels[k] == label;
+  }
+  return found;
+}
+
+/* The contact holds no other ball's centre, and has the labels of all that it took the place of. */
+static void check_contact(const mlim_balls* old, const mlim_balls* balls, int32_t contact)
+{
+  const double* center = balls->centers + 3 * (size_t)contact;
+  const double radius = balls->radii[contact];
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    CHECK(b == (size_t)contact || mlim_distance(center, balls->centers + 3 * b) > radius);
+  }
+  for (size_t b = 0; b < old->ball_count; ++b)
+  {
+    const int32_t set = old->ball_sets[b];
+    for (size_t k = old->sets.offsets[set]; k < old->sets.offsets[set + 1]; ++k)
+    {
+      CHECK(mlim_distance(center, old->centers + 3 * b) > radius ||
+            has_label(&balls->sets, balls->ball_sets[contact], old->sets.labels[k]));
+    }
+  }
+}
+
+/* A contact in the place of a ball, and one beside a ball, which touches it alone. */
+static void check_contracted(const mlim_balls* balls)
+{
+  int32_t label = 0;
+  size_t offsets[2] = { 0, 1 };
+  const mlim_sets sets = { .count = 1, .offsets = offsets, .labels = &label };
+  for (size_t b = 0; b < balls->ball_count; b += 5)
+  {
+    const double r = balls->radii[b];
+    mlim_contact contacts[2] = { { .radius = 1.7 * r }, { .radius = 0.3 * r } };
+    mlim_copy(balls->centers + 3 * b, contacts[0].center);
+    mlim_copy(balls->centers + 3 * b, contacts[1].center);
+    contacts[1].center[2] += 2.5 * r;
+    mlim_balls made;
+    CHECK(mlim_balls_contract(balls, contacts, 2, &sets, NULL, &made) == MLIM_OK);
+    CHECK(part_count(&made) <= part_count(balls) + 1);
+    CHECK_COUNT(gap_count(&made), 0);
+    int32_t found = 0;
+    for (size_t m = 0; m < made.ball_count; ++m)
+    {
+      if (made.ball_curves[m] == MLIM_CONTACT)
+      {
+        check_contact(balls, &made, (int32_t)m);
+        CHECK(has_label(&made.sets, made.ball_sets[m], label));
+        ++found;
+      }
+    }
+    CHECK_COUNT(found, 2);
+    mlim_balls_free(&made);
+  }
+}
+
 static void check_scene(const char* name, const scene_spec* scene, double scale, int is_empty)
 {
   mlim_field* field = scene_field(scene);
@@ -94,31 +200,7 @@ static void check_scene(const char* name, const scene_spec* scene, double scale,
   }
   CHECK_COUNT(fault_count(&counts), 0);
 
-  /* Splitting every third ball keeps the conditions, and the junctions. */
-  unsigned char* is_marked = mlim_allocate_zeroed(balls.ball_count, 1);
-  for (size_t b = 0; b < balls.ball_count; b += 3)
-  {
-    is_marked[b] = 1;
-  }
-  const mlim_ball_split split = { .is_marked = is_marked };
-  mlim_balls halves;
-  CHECK(mlim_balls_split(&balls, &options, &split, NULL, &halves) == MLIM_OK);
-  CHECK(mlim_balls_check(NULL, &halves, &options, &counts) == MLIM_OK);
-  if (fault_count(&counts) > 0)
-  {
-    fprintf(stderr, "%s split, %zu balls: %zu apart %zu hold %zu touch %zu long\n", name,
-      halves.ball_count, counts.apart_count, counts.holding_count, counts.touching_count,
-      counts.long_count);
-  }
-  CHECK_COUNT(fault_count(&counts), 0);
-  /* Crowded balls may overlap enough even when halved. */
-  CHECK(halves.ball_count >= balls.ball_count);
-  for (size_t b = 0; b < balls.ball_count && balls.ball_curves[b] < 0; ++b)
-  {
-    CHECK(!memcmp(balls.centers + 3 * b, halves.centers + 3 * b, 3 * sizeof(double)));
-  }
-  mlim_release(is_marked);
-  mlim_balls_free(&halves);
+  check_contracted(&balls);
   mlim_balls_free(&balls);
   mlim_curves_free(&curves);
   mlim_field_free(field);

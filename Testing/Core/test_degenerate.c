@@ -69,6 +69,22 @@ static double islands(const double at[3], int label)
   return label == is_island;
 }
 
+/* Two spheres of radius 5 that all but touch, or touch a little, on a line askew to the axes. */
+static double sphere_gap;
+
+static double near_spheres(const double at[3], int label)
+{
+  const double u[3] = { 0.96, 0.24, 0.144 };
+  const double side = label == 1 ? -0.5 : 0.5;
+  double squared = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const double center = (k == 0 ? 11.5 : 7.3) + side * (10 + sphere_gap) * u[k];
+    squared += (at[k] - center) * (at[k] - center);
+  }
+  return label == 0 ? 0 : 5 - sqrt(squared);
+}
+
 static double wall_on_points(const double at[3], int label)
 {
   return label == 0 ? 3 - at[0] : at[0] - 3;
@@ -155,6 +171,40 @@ static void test_fields(void)
     check_run(&im->grid, 0, rows[k].expected);
     image_free(im);
     shape_report(rows[k].name, before);
+  }
+}
+
+/* The film between the spheres, or their contact, is far thinner than the smallest distance of two
+   vertices: contacts cover it, and the topology is in order. */
+static void check_near_spheres(const mlim_grid* grid)
+{
+  const mlim_options options = run_options(0);
+  mlim_context context = { 0 };
+  run r;
+  CHECK(run_grid(grid, &options, &context, &r) == MLIM_OK);
+  audit_partition(r.field, &r.mesh);
+  CHECK_COUNT(r.mesh.certificate.lost_component_count, 0);
+  CHECK_COUNT(r.mesh.certificate.disk_failure_count, 0);
+  CHECK_COUNT(r.mesh.report.off_curve_edge_count, 0);
+  CHECK(r.mesh.contact_count > 0);
+  /* The film is thinner than the smallest distance over a disc of 7 square spacings. */
+  CHECK_BELOW((double)r.mesh.contact_count, 40);
+  CHECK_BELOW((double)r.mesh.report.relabeled_ratio_count, 3);
+  run_free(&r);
+}
+
+static void test_near_spheres(void)
+{
+  const double gaps[] = { 0.05, 0.01, 0, -0.01, -0.05 };
+  const int32_t dims[3] = { 24, 15, 15 };
+  for (size_t k = 0; k < sizeof gaps / sizeof *gaps; ++k)
+  {
+    const int before = check_failures;
+    sphere_gap = gaps[k];
+    image* im = image_sample(dims, SPACING, 3, 0, near_spheres);
+    check_near_spheres(&im->grid);
+    image_free(im);
+    shape_report("near spheres", before);
   }
 }
 
@@ -310,6 +360,7 @@ static void test_bad_arrays(void)
 int main(void)
 {
   test_fields();
+  test_near_spheres();
   test_noise();
   test_scales();
   test_anisotropy();

@@ -15,6 +15,8 @@ typedef struct octahedron
   size_t link_offsets[8];
   int32_t link_neighbors[8];
   mlim_ball_links links;
+  int32_t ball_curves[8];
+  mlim_balls balls;
 } octahedron;
 
 static void set_up(octahedron* o, const int32_t labels[8])
@@ -62,6 +64,8 @@ static void set_up(octahedron* o, const int32_t labels[8])
 /* Balls at the vertex and at some of its neighbours, all of them next to it on curves. */
 static void put_balls(octahedron* o, const int* vertices, size_t count)
 {
+  o->balls.ball_curves = o->ball_curves;
+  o->complex.balls = &o->balls;
   o->vertices[0].kind = MLIM_VERTEX_BALL;
   o->vertices[0].ball = 0;
   for (size_t k = 0; k < count; ++k)
@@ -142,6 +146,44 @@ static void test_balls(void)
   }
 }
 
+/* Sheets may touch at a contact, and end at it. */
+static void test_contacts(void)
+{
+  const int32_t sectors[8] = { 0, 1, 0, 2, 0, 1, 0, 2 };
+  const int32_t touching[8] = { 1, 0, 0, 0, 0, 0, 0, 1 };
+  const int32_t sharing[8] = { 0, 0, 0, 1, 0, 1, 0, 0 };
+  const int32_t none[8] = { 0 };
+  const struct
+  {
+    const int32_t* labels;
+    int is_contact; /* the middle */
+    int contact;    /* a neighbour, 0: none */
+    mlim_disk expected;
+  } rows[] = {
+    { touching, 1, 0, MLIM_DISK_HOLDS }, /* two cycles */
+    { sharing, 1, 0, MLIM_DISK_FAILS },  /* they share an edge to a vertex that is no ball */
+    { sharing, 1, 2, MLIM_DISK_HOLDS },  /* to a ball */
+    { none, 1, 0, MLIM_DISK_FAILS },
+    { sectors, 0, 6, MLIM_DISK_HOLDS }, /* a curve from 5 that goes on at the contact */
+    { sectors, 0, 4, MLIM_DISK_FAILS }, /* it does not lead there */
+  };
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
+  {
+    octahedron o;
+    const int curve_neighbor[1] = { 5 };
+    set_up(&o, rows[k].labels);
+    put_balls(&o, curve_neighbor, rows[k].is_contact ? 0 : 1);
+    o.ball_curves[0] = rows[k].is_contact ? MLIM_CONTACT : 0;
+    if (rows[k].contact > 0)
+    {
+      o.vertices[rows[k].contact].kind = MLIM_VERTEX_BALL;
+      o.vertices[rows[k].contact].ball = 2;
+      o.ball_curves[2] = MLIM_CONTACT;
+    }
+    CHECK(check(&o) == rows[k].expected);
+  }
+}
+
 /* The links list both ends of every edge of the balls. */
 static void test_links(void)
 {
@@ -162,6 +204,7 @@ int main(void)
 {
   test_sheets();
   test_balls();
+  test_contacts();
   test_links();
   return check_result();
 }

@@ -175,6 +175,35 @@ static void test_vertex_limit(int kind)
   run_free(&whole);
 }
 
+/* A ball's centre in another ball, nearer in power to that one: it is left out, or the next point would
+   hide it. */
+static void test_held_ball(void)
+{
+  const shape s = shape_of(SHAPE_SPHERE);
+  image* im = shape_sample(&s);
+  run r = { 0 };
+  CHECK(mlim_field_create(&im->grid, NULL, &r.field) == MLIM_OK);
+  r.options = run_options(1);
+  CHECK(mlim_options_complete(r.field, NULL, &r.options) == MLIM_OK);
+  double centers[] = { 5, 5, 5, 5.9, 5, 5 };
+  double radii[] = { 1, 0.05 };
+  int32_t curves[] = { MLIM_JUNCTION, MLIM_JUNCTION };
+  int32_t ball_sets[] = { 0, 0 };
+  size_t offsets[] = { 0, 2 };
+  int32_t labels[] = { 0, 1 };
+  const mlim_balls balls = { .ball_count = 2,
+    .centers = centers,
+    .radii = radii,
+    .ball_curves = curves,
+    .ball_sets = ball_sets,
+    .sets = { .count = 1, .offsets = offsets, .labels = labels } };
+  CHECK(mlim_mesh_refine(r.field, &balls, &r.options, NULL, &r.mesh) == MLIM_OK);
+  CHECK_COUNT(r.mesh.report.hidden_ball_count, 1);
+  audit_partition(r.field, &r.mesh);
+  run_free(&r);
+  image_free(im);
+}
+
 int main(void)
 {
   const int kinds[] = { SHAPE_SPHERE, SHAPE_TWO_SPHERES, SHAPE_CUT_SPHERE, SHAPE_OCTANTS };
@@ -186,5 +215,6 @@ int main(void)
   test_bounds(SHAPE_SPHERE);
   test_bounds(SHAPE_TWO_SPHERES);
   test_volume_converges();
+  test_held_ball();
   return check_result();
 }

@@ -47,7 +47,9 @@ COLUMNS = (
     ("mesh s", "{:6.2f}", lambda f: f["mesh_seconds"]),
     ("audit s", "{:7.1f}", lambda f: f["audit_seconds"]),
     ("open", "{:4d}", lambda f: f["open_edges"] + f["incoherent_edges"]),
+    ("contac", "{:6d}", lambda f: f["contact_lines"]),
     ("off c.", "{:6d}", lambda f: f["lines_off_curves"]),
+    ("disks", "{:5d}", lambda f: f["failed_disks"]),
     ("2-tri", "{:5d}", lambda f: f["curve_edges_with_two_triangles"]),
     ("bad el.", "{:7d}", lambda f: f["degenerate"] + f["duplicate_triangles"]),
     ("normals", "{:7.3%}", lambda f: f["normal_share"]),
@@ -111,8 +113,15 @@ def run_case(path, facet_size_spacings):
     figures["audit_seconds"] = time.perf_counter() - start
     figures["mesh_seconds"] = mesh_seconds
     figures["facet_size"] = option_used(surface, "FacetSize")
+    figures["failed_disks"] = int(option_used(surface, "DiskFailureCount"))
     figures["name"] = path.stem
     return figures
+
+
+def disk_failures(figures):
+    """Vertices that fail the disk condition: at most 1 in 2,000; the target is 1 in 10,000."""
+    failed, points = figures["failed_disks"], figures["points"]
+    return [f"{failed} of {points} disks fail"] if failed > points / 2000 else []
 
 
 def vertex_count_failures(figures, facet_size_spacings):

@@ -16,6 +16,8 @@ _COUNTS = (
     ("protecting balls", "BallCount"),
     ("balls covered by others", "HiddenBallCount"),
     ("cells with a mended label", "RelabeledCellCount"),
+    ("contacts", "ContactCount"),
+    ("edges of contacts", "ContactEdgeCount"),
     ("junction edges off the curves", "OffCurveEdgeCount"),
     ("curve edges lost", "LostCurveEdgeCount"),
 )

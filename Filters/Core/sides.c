@@ -1,0 +1,48 @@
+#include "sides.h"
+
+#include "vector.h"
+
+enum
+{
+  LOOKS = 4 /* at the reach, its half, and so on */
+};
+
+static int32_t label_at(
+  const mlim_complex* complex, const double middle[3], const double normal[3], double offset)
+{
+  const double at[3] = { middle[0] + offset * normal[0], middle[1] + offset * normal[1],
+    middle[2] + offset * normal[2] };
+  return mlim_field_label(complex->oracle.field, at);
+}
+
+int mlim_sides_are_seen(
+  const mlim_complex* complex, int32_t cell, int index, int32_t inner, int32_t outer, double reach)
+{
+  int32_t v[3];
+  mlim_complex_facet_vertices(complex, cell, index, v);
+  const double* a = complex->vertices[v[0]].point;
+  const double* b = complex->vertices[v[1]].point;
+  const double* c = complex->vertices[v[2]].point;
+  double u[3];
+  double w[3];
+  double normal[3];
+  double middle[3];
+  mlim_subtract(b, a, u);
+  mlim_subtract(c, a, w);
+  mlim_cross(u, w, normal);
+  const double length = sqrt(mlim_dot(normal, normal));
+  for (int k = 0; k < 3; ++k)
+  {
+    normal[k] /= length;
+    middle[k] = a[k] + (u[k] + w[k]) / 3;
+    middle[k] = a[k] == b[k] && a[k] == c[k] ? a[k] : middle[k];
+  }
+  int is_inner = 0;
+  int is_outer = 0;
+  for (int look = 0; look < LOOKS && !(is_inner && is_outer); ++look, reach *= 0.5)
+  {
+    is_inner = is_inner || label_at(complex, middle, normal, -reach) == inner;
+    is_outer = is_outer || label_at(complex, middle, normal, reach) == outer;
+  }
+  return is_inner && is_outer;
+}

@@ -1,0 +1,321 @@
+#include "spots.h"
+
+#include "label_sets.h"
+#include "memory.h"
+#include "point_grid.h"
+#include "status.h"
+#include "vector.h"
+
+#include <math.h>
+
+/* In units of the smallest distance. A spot gathers what is within REACH of its first point; its
+   contact goes MARGIN beyond them and is not larger than LARGEST: larger ones swallow what could be
+   meshed, smaller ones leave more to mending. */
+static const double REACH = 1.6;
+static const double MARGIN = 0.5;
+static const double SMALLEST = 1;
+static const double LARGEST = 1.8;
+
+/* A contact misses the centres of others, and they its own, by this factor of the radius. */
+static const double APART = 1.05;
+
+/* Where a facet crosses an interface. */
+typedef struct spot_point
+{
+  double point[3];
+  mlim_sheet sheet;
+  int is_taken;
+} spot_point;
+
+typedef struct spotting
+{
+  const mlim_refinement* refinement;
+  const mlim_field_grid* grid;
+  const mlim_balls* balls;
+  double unit; /* the smallest distance */
+  double largest_ball;
+  spot_point* points;
+  size_t point_count, point_capacity;
+  int32_t* members; /* of the spot at work */
+  size_t member_count;
+  mlim_contact* contacts;
+  size_t contact_count;
+  mlim_set_table table;
+  mlim_point_grid point_grid;
+  mlim_point_grid ball_grid;
+  mlim_point_grid contact_grid;
+} spotting;
+
+static void spotting_free(spotting* s)
+{
+  mlim_release(s->points);
+  mlim_release(s->members);
+  mlim_release(s->contacts);
+  mlim_set_table_free(&s->table);
+  mlim_point_grid_free(&s->point_grid);
+  mlim_point_grid_free(&s->ball_grid);
+  mlim_point_grid_free(&s->contact_grid);
+}
+
+static mlim_status gather_points(spotting* s)
+{
+  const mlim_complex* complex = &s->refinement->complex;
+  for (size_t f = 1; f < complex->facet_count; ++f)
+  {
+    const mlim_facet* facet = &complex->facets[f];
+    if (!facet->is_alive)
+    {
+      continue;
+    }
+    const mlim_options* options = s->refinement->options;
+    const mlim_badness badness = mlim_criteria_judge(complex, options, facet).badness;
+    if ((badness != MLIM_BAD_CROSSINGS && badness != MLIM_BAD_SHEET) ||
+        mlim_criteria_may_insert(complex, options, facet, badness))
+    {
+      continue;
+    }
+    if (mlim_reserve(&s->points, &s->point_capacity, s->point_count + 1, sizeof *s->points))
+    {
+      return MLIM_OUT_OF_MEMORY;
+    }
+    spot_point* point = &s->points[s->point_count++];
+    *point = (spot_point){ .sheet = facet->sheet };
+    mlim_copy(facet->crossing, point->point);
+  }
+  return MLIM_OK;
+}
+
+static mlim_status create_grids(spotting* s)
+{
+  s->members = mlim_allocate(s->point_count, sizeof *s->members);
+  s->contacts = mlim_allocate(s->point_count, sizeof *s->contacts);
+  for (size_t b = 0; b < s->balls->ball_count; ++b)
+  {
+    s->largest_ball = fmax(s->largest_ball, s->balls->radii[b]);
+  }
+  if (s->members == NULL || s->contacts == NULL ||
+      mlim_point_grid_create(REACH * s->unit, s->point_count, &s->point_grid) != MLIM_OK ||
+      mlim_point_grid_create(2 * LARGEST * s->unit, s->point_count, &s->contact_grid) != MLIM_OK ||
+      mlim_point_grid_create(
+        fmax(2 * s->largest_ball, s->unit), s->balls->ball_count + 1, &s->ball_grid) != MLIM_OK)
+  {
+    return MLIM_OUT_OF_MEMORY;
+  }
+  for (size_t p = 0; p < s->point_count; ++p)
+  {
+    mlim_point_grid_add(&s->point_grid, s->points[p].point, (int32_t)p);
+  }
+  for (size_t b = 0; b < s->balls->ball_count; ++b)
+  {
+    mlim_point_grid_add(&s->ball_grid, s->balls->centers + 3 * b, (int32_t)b);
+  }
+  return MLIM_OK;
+}
+
+static void find_members(spotting* s, const double first[3])
+{
+  const double reach = REACH * s->unit;
+  mlim_point_walk walk;
+  s->member_count = 0;
+  for (int32_t p = mlim_point_grid_first(&s->point_grid, first, reach, &walk); p >= 0;
+       p = mlim_point_grid_next(&s->point_grid, &walk))
+  {
+    if (!s->points[p].is_taken && mlim_distance(s->points[p].point, first) <= reach)
+    {
+      s->members[s->member_count++] = p;
+    }
+  }
+}
+
+static int count_faces(const spotting* s, const double point[3])
+{
+  int count = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    count += point[k] <= 0 || point[k] >= s->grid->size[k];
+  }
+  return count;
+}
+
+/* The members' mean would be on no sheet, and off the box's faces: the member nearest to it, of those
+   on most faces. */
+static void choose_member(const spotting* s, double center[3])
+{
+  double mean[3] = { 0, 0, 0 };
+  for (size_t m = 0; m < s->member_count; ++m)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      mean[k] += s->points[s->members[m]].point[k] / (double)s->member_count;
+    }
+  }
+  int most = -1;
+  double least = HUGE_VAL;
+  for (size_t m = 0; m < s->member_count; ++m)
+  {
+    const double* point = s->points[s->members[m]].point;
+    const int faces = count_faces(s, point);
+    const double d = mlim_distance_squared(point, mean);
+    if (faces > most || (faces == most && d < least))
+    {
+      most = faces;
+      least = d;
+      mlim_copy(point, center);
+    }
+  }
+}
+
+static double radius_at(const spotting* s, const double center[3])
+{
+  double far = 0;
+  for (size_t m = 0; m < s->member_count; ++m)
+  {
+    far = fmax(far, mlim_distance(s->points[s->members[m]].point, center));
+  }
+  return fmax(far + MARGIN * s->unit, SMALLEST * s->unit);
+}
+
+/* The ball in whose place the contact would stand: one that it touches deeply, on no fewer faces of the
+   box, the nearest of those on most. -1: none. */
+static int32_t find_ball(const spotting* s, const double center[3], double radius)
+{
+  int32_t found = -1;
+  int most = count_faces(s, center);
+  double least = HUGE_VAL;
+  mlim_point_walk walk;
+  for (int32_t b = mlim_point_grid_first(&s->ball_grid, center, radius + s->largest_ball, &walk);
+       b >= 0; b = mlim_point_grid_next(&s->ball_grid, &walk))
+  {
+    const double* at = s->balls->centers + 3 * (size_t)b;
+    const double d = mlim_distance(at, center);
+    const int faces = count_faces(s, at);
+    if (d <= fmax(radius, s->balls->radii[b] + 0.5 * radius) &&
+        (faces > most || (faces == most && d < least)))
+    {
+      most = faces;
+      least = d;
+      found = b;
+    }
+  }
+  return found;
+}
+
+static int is_in_ball(const spotting* s, const double center[3], double radius)
+{
+  mlim_point_walk walk;
+  for (int32_t b = mlim_point_grid_first(&s->ball_grid, center, s->largest_ball, &walk); b >= 0;
+       b = mlim_point_grid_next(&s->ball_grid, &walk))
+  {
+    const double d = mlim_distance(s->balls->centers + 3 * (size_t)b, center);
+    if (d >= radius && d < APART * s->balls->radii[b])
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* Makes the radius small enough for the contacts that are there. 0: there is no room. */
+static int fit(const spotting* s, mlim_contact* contact)
+{
+  const double reach = APART * LARGEST * s->unit;
+  mlim_point_walk walk;
+  for (int32_t c = mlim_point_grid_first(&s->contact_grid, contact->center, reach, &walk); c >= 0;
+       c = mlim_point_grid_next(&s->contact_grid, &walk))
+  {
+    const double d = mlim_distance(s->contacts[c].center, contact->center);
+    if (d < APART * s->contacts[c].radius)
+    {
+      return 0;
+    }
+    contact->radius = fmin(contact->radius, d / APART);
+  }
+  return contact->radius >= MARGIN * s->unit && contact->radius <= LARGEST * s->unit &&
+         !is_in_ball(s, contact->center, contact->radius);
+}
+
+/* In the place of a ball if that is possible: curves stay where they are. */
+static int place_contact(const spotting* s, mlim_contact* contact)
+{
+  double center[3];
+  choose_member(s, center);
+  const double radius = radius_at(s, center);
+  const int32_t ball = find_ball(s, center, radius);
+  if (ball >= 0)
+  {
+    mlim_copy(s->balls->centers + 3 * (size_t)ball, contact->center);
+    contact->radius = radius_at(s, contact->center);
+    if (fit(s, contact))
+    {
+      return 1;
+    }
+  }
+  mlim_copy(center, contact->center);
+  contact->radius = radius;
+  return fit(s, contact);
+}
+
+static mlim_status join_sheets(spotting* s, int32_t* set)
+{
+  const mlim_field* field = s->refinement->complex.oracle.field;
+  mlim_status status = mlim_set_table_add(&s->table, NULL, 0, set);
+  for (size_t m = 0; m < s->member_count && status == MLIM_OK; ++m)
+  {
+    const mlim_sheet* sheet = &s->points[s->members[m]].sheet;
+    const int32_t labels[3] = { sheet->low, sheet->high,
+      mlim_field_label_count(field) + sheet->face };
+    int32_t one;
+    status = mlim_set_table_add(&s->table, labels, sheet->face < 0 ? 2 : 3, &one);
+    status = status != MLIM_OK ? status : mlim_set_table_join(&s->table, *set, one, set);
+  }
+  return status;
+}
+
+static mlim_status make_contact(spotting* s, size_t first)
+{
+  mlim_contact contact;
+  find_members(s, s->points[first].point);
+  s->points[first].is_taken = 1;
+  if (!place_contact(s, &contact))
+  {
+    return MLIM_OK;
+  }
+  for (size_t m = 0; m < s->member_count; ++m)
+  {
+    s->points[s->members[m]].is_taken = 1;
+  }
+  mlim_point_grid_add(&s->contact_grid, contact.center, (int32_t)s->contact_count);
+  s->contacts[s->contact_count] = contact;
+  return join_sheets(s, &s->contacts[s->contact_count++].set);
+}
+
+mlim_status mlim_spots_cover(const mlim_refinement* refinement, const mlim_balls* balls,
+  mlim_context* context, mlim_balls* out, size_t* count)
+{
+  *out = (mlim_balls){ 0 };
+  *count = 0;
+  spotting s = { .refinement = refinement,
+    .grid = mlim_field_grid_of(refinement->complex.oracle.field),
+    .balls = balls,
+    .unit = refinement->options->smallest_distance };
+  mlim_status status = gather_points(&s);
+  if (status == MLIM_OK && s.point_count > 0)
+  {
+    status = create_grids(&s);
+  }
+  for (size_t p = 0; p < s.point_count && status == MLIM_OK; ++p)
+  {
+    status = s.points[p].is_taken ? MLIM_OK : make_contact(&s, p);
+  }
+  if (status == MLIM_OUT_OF_MEMORY)
+  {
+    mlim_fail_memory(context, "spots that cannot be resolved");
+  }
+  if (status == MLIM_OK && s.contact_count > 0)
+  {
+    status = mlim_balls_contract(balls, s.contacts, s.contact_count, &s.table.sets, context, out);
+    *count = s.contact_count;
+  }
+  spotting_free(&s);
+  return status;
+}
