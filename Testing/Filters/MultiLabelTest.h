@@ -158,7 +158,7 @@ inline bool IsTyped(vtkPolyData* surface)
 {
   const vtkIdType cells = surface->GetNumberOfCells();
   bool result = surface->GetPoints() != nullptr;
-  for (const char* name : { "BoundaryLabels", "PatchId", "CurveId" })
+  for (const char* name : { "BoundaryLabels", "Label", "PatchId", "CurveId" })
   {
     vtkDataArray* array = surface->GetCellData()->GetArray(name);
     result =

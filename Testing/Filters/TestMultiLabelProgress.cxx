@@ -7,6 +7,8 @@
 #include "vtkMultiLabelCurveExtractor.h"
 #include "vtkMultiLabelCurveProtector.h"
 
+#include "vtkVersion.h"
+
 #include <algorithm>
 #include <set>
 
@@ -69,6 +71,17 @@ void CheckProgress()
   CHECK(stage.Texts.count("Refining the interface") == 0, "the extractor refines nothing");
 }
 
+// From 9.2 on VTK itself empties the output of an aborted filter, and the flag stays until the host
+// takes it back.
+bool IsAbortedOutput(vtkPolyData* surface)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
+  return surface->GetNumberOfCells() == 0 && surface->GetNumberOfPoints() == 0;
+#else
+  return IsTypedEmpty(surface);
+#endif
+}
+
 void CheckAbort()
 {
   vtkNew<vtkMultiLabelInterfaceMesher> mesher;
@@ -84,17 +97,19 @@ void CheckAbort()
   {
     watch.Fractions.clear();
     watch.AbortAt = at;
+    mesher->SetAbortExecute(0);
     mesher->Modified();
     mesher->Update();
     if (static_cast<int>(watch.Fractions.size()) >= at && mesher->GetAbortExecute())
     {
       ++abortCount;
-      CHECK(IsTypedEmpty(mesher->GetOutput()), "abort at event " + std::to_string(at));
+      CHECK(IsAbortedOutput(mesher->GetOutput()), "abort at event " + std::to_string(at));
     }
   }
   CHECK(abortCount >= std::min(count - 2, 4), "some of the runs were aborted");
   CHECK(messages.Errors.empty() && messages.ExecutiveErrors.empty(), messages.Errors);
   watch.AbortAt = 0;
+  mesher->SetAbortExecute(0);
   mesher->Modified();
   mesher->Update();
   CHECK(mesher->GetOutput()->GetNumberOfPolys() == whole, "the next run is whole again");
