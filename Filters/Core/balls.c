@@ -253,9 +253,12 @@ static mlim_status cover_until_good(covering* work, mlim_context* context)
   mlim_status status = MLIM_OK;
   for (int round = 0; round < MAX_ROUNDS; ++round)
   {
+    const double done = (double)round / (MAX_ROUNDS + 1);
     work->fault_count = 0;
     work->lowered_count = 0;
+    status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
     status = status ? status : cover_all(work);
+    status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
     status =
       status ? status
              : mlim_balls_examine(work->curves, &work->balls, work->options, lower_at_fault, work);

@@ -106,6 +106,26 @@ class TestMesh(unittest.TestCase):
         with self.assertRaises(ZeroDivisionError):
             mlim.mesh(make_image(), progress=lambda fraction, _: 1 / 0)
 
+    def test_label_map(self):
+        image = vtkImageData()
+        image.SetDimensions(4, 4, 4)
+        labels = numpy_to_vtk(np.arange(64, dtype=np.int16), deep=True)
+        labels.SetName("ids")
+        image.GetPointData().SetScalars(labels)
+        with self.assertRaisesRegex(mlim.MeshError, "'ids': a label map"):
+            mlim.mesh(image)
+        # With a background it is one indicator function, as soft masks are.
+        self.assertEqual(labels_of(mlim.mesh(image, background=31.5)), {0, 1})
+
+    def test_stages(self):
+        image = make_image()
+        covered = mlim.balls(mlim.curves(image))
+        self.assertEqual(digest(mlim.mesh(image, balls=covered)), digest(mlim.mesh(image)))
+
+    def test_warnings(self):
+        with self.assertWarnsRegex(mlim.MeshWarning, "vertex limit of 120"):
+            mlim.mesh(make_image(), vertex_limit=120)
+
     def test_report(self):
         surface = mlim.mesh(make_image())
         text = mlim.report(surface)
@@ -182,7 +202,9 @@ class TestFiles(unittest.TestCase):
     def test_refused(self):
         with self.assertRaisesRegex(FileNotFoundError, "none.vti"):
             mlim.mesh(self.path("none.vti"))
-        with self.assertRaisesRegex(ValueError, "image.txt"):
+        with open(self.path("image.txt"), "w", encoding="ascii") as file:
+            file.write("no image")
+        with self.assertRaisesRegex(ValueError, "image.txt: not an image"):
             mlim.read(self.path("image.txt"))
         with open(self.path("broken.vti"), "w", encoding="ascii") as file:
             file.write("no image")

@@ -2,83 +2,168 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import os
 from typing import TYPE_CHECKING
+
+from .running import collect_messages
 
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkImageData
 
-
-def _xml_reader():
-    from vtkmodules.vtkIOXML import vtkXMLImageDataReader
-
-    return vtkXMLImageDataReader()
-
-
-def _nifti_reader():
-    from vtkmodules.vtkIOImage import vtkNIFTIImageReader
-
-    return vtkNIFTIImageReader()
-
-
-def _meta_reader():
-    from vtkmodules.vtkIOImage import vtkMetaImageReader
-
-    return vtkMetaImageReader()
-
-
-def _nrrd_reader():
-    from vtkmodules.vtkIOImage import vtkNrrdReader
-
-    return vtkNrrdReader()
-
-
+# What a file's name ends in, and the reader: the module and class of VTK. A name may end in more
+# than one of them; the longest counts.
 _READERS = {
-    ".vti": _xml_reader,
-    ".nii": _nifti_reader,
-    ".nii.gz": _nifti_reader,
-    ".mha": _meta_reader,
-    ".mhd": _meta_reader,
-    ".nrrd": _nrrd_reader,
+    ".vti": ("vtkIOXML", "vtkXMLImageDataReader"),
+    ".pvti": ("vtkIOXML", "vtkXMLPImageDataReader"),
+    ".vtk": ("vtkIOLegacy", "vtkStructuredPointsReader"),
+    ".vtkhdf": ("vtkIOHDF", "vtkHDFReader"),
+    ".nii": ("vtkIOImage", "vtkNIFTIImageReader"),
+    ".nii.gz": ("vtkIOImage", "vtkNIFTIImageReader"),
+    ".img": ("vtkIOImage", "vtkNIFTIImageReader"),
+    ".img.gz": ("vtkIOImage", "vtkNIFTIImageReader"),
+    ".hdr": ("vtkIOImage", "vtkNIFTIImageReader"),
+    ".mha": ("vtkIOImage", "vtkMetaImageReader"),
+    ".mhd": ("vtkIOImage", "vtkMetaImageReader"),
+    ".nrrd": ("vtkIOImage", "vtkNrrdReader"),
+    ".nhdr": ("vtkIOImage", "vtkNrrdReader"),
+    ".mrc": ("vtkIOImage", "vtkMRCReader"),
+    ".rec": ("vtkIOImage", "vtkMRCReader"),
+    ".ali": ("vtkIOImage", "vtkMRCReader"),
+    ".mnc": ("vtkIOMINC", "vtkMINCImageReader"),
+    ".slc": ("vtkIOImage", "vtkSLCReader"),
+    ".tif": ("vtkIOImage", "vtkTIFFReader"),
+    ".tiff": ("vtkIOImage", "vtkTIFFReader"),
+    ".dcm": ("vtkIOImage", "vtkDICOMImageReader"),
 }
+# Files of VTK that hold something else than an image, for a clearer sentence.
+_OTHERS = (".vtp", ".vtu", ".vts", ".vtr", ".vtm", ".stl", ".ply", ".obj")
+# Of the headers of images; more points than this a byte of the file is a header that lies. The best
+# compression of a constant image is about 1000 to 1.
+_MAX_POINTS_PER_BYTE = 100_000
 
 
 def read(path: str | os.PathLike[str]) -> vtkImageData:
-    """The image in a file: .vti, .nii, .nii.gz, .mha, .mhd or .nrrd.
+    """The image in a file, or in a folder of slices.
 
-    Raises FileNotFoundError, ValueError for another kind of file, and OSError if VTK's reader
-    reports an error.
+    Files: .vti, .pvti, .vtk (structured points), .vtkhdf, .nii, .nii.gz, .hdr and .img (NIFTI,
+    Analyze), .mha, .mhd, .nrrd, .nhdr, .mrc, .rec, .ali, .mnc, .slc, .tif, .tiff (pages are
+    slices), .dcm, and whatever else VTK's image readers recognise by its content. Folders: a DICOM
+    series, or slices in files of one kind in the order of their names.
+
+    Position and axes of a NIFTI file are those of its matrix.
+
+    Raises FileNotFoundError, ValueError for a file that is no image, and OSError with the reader's
+    sentence if it cannot be read.
     """
     name = os.fspath(path)
-    make = next((m for e, m in _READERS.items() if name.lower().endswith(e)), None)
-    if make is None:
-        raise ValueError(f"{name}: not one of the known kinds of file, {', '.join(_READERS)}")
     if not os.path.exists(name):
         raise FileNotFoundError(f"{name}: no such file")
-    reader = make()
+    reader = _folder_reader(name) if os.path.isdir(name) else _file_reader(name)
     errors: list[str] = []
-    _collect_errors(reader, errors)
-    reader.SetFileName(name)
-    reader.Update()
-    image = reader.GetOutput()
+    collect_messages(reader, "ErrorEvent", errors)
+    with _silence():
+        reader.UpdateInformation()
+        _check_header(reader, name, errors)
+        reader.Update()
+    image = reader.GetOutputDataObject(0)
+    if image is not None and not image.IsA("vtkImageData"):
+        raise ValueError(f"{name}: holds a {image.GetClassName()}, not an image")
     if errors or image is None or image.GetNumberOfPoints() == 0:
         raise OSError(f"{name}: {errors[0] if errors else 'holds no image'}")
-    if name.lower().endswith((".nii", ".nii.gz")):
+    if reader.IsA("vtkNIFTIImageReader"):
         _place_nifti(reader, image)
     return image
 
 
-def _collect_errors(algorithm, errors: list[str]) -> None:
-    """Appends the text of error events to a list, and keeps VTK from printing them."""
+def known_endings() -> tuple[str, ...]:
+    """What the names of image files end in."""
+    return tuple(_READERS)
 
-    def keep(_caller, _event, text: str) -> None:
-        # VTK's text is "ERROR: In FILE, line N\nvtkClass (0x...): sentence\n\n".
-        sentence = text.strip().split("\n", 1)[-1]
-        errors.append(sentence.split("): ", 1)[-1].strip())
 
-    keep.CallDataType = "string0"
-    algorithm.AddObserver("ErrorEvent", keep)
-    algorithm.GetExecutive().AddObserver("ErrorEvent", keep)
+def _file_reader(name: str):
+    endings = [ending for ending in _READERS if name.lower().endswith(ending)]
+    if endings:
+        module, class_name = _READERS[max(endings, key=len)]
+        try:
+            reader = getattr(importlib.import_module(f"vtkmodules.{module}"), class_name)()
+        except (ImportError, AttributeError):
+            raise ValueError(f"{name}: this VTK was built without {class_name}") from None
+    else:
+        reader = None if name.lower().endswith(_OTHERS) else _recognise(name)
+        if reader is None:
+            raise ValueError(
+                f"{name}: not an image that VTK can read; known are {', '.join(_READERS)}, "
+                "folders of slices, and other files whose content VTK's image readers recognise"
+            )
+    reader.SetFileName(name)
+    return reader
+
+
+def _recognise(name: str):
+    """A reader that recognises the file by its content, or None."""
+    from vtkmodules.vtkIOImage import vtkDICOMImageReader, vtkImageReader2Factory
+
+    with _silence():
+        reader = vtkImageReader2Factory.CreateImageReader2(name)
+        if reader is None:
+            dicom = vtkDICOMImageReader()
+            reader = dicom if dicom.CanReadFile(name) else None
+    return reader
+
+
+def _folder_reader(name: str):
+    from vtkmodules.vtkCommonCore import vtkStringArray
+
+    files = sorted(entry.path for entry in os.scandir(name) if entry.is_file())
+    kinds = {os.path.splitext(file)[1].lower() for file in files}
+    reader = _recognise(files[0]) if len(kinds) == 1 else None
+    if reader is None:
+        raise ValueError(f"{name}: neither a DICOM series nor slices in image files of one kind")
+    if reader.IsA("vtkDICOMImageReader"):
+        reader.SetDirectoryName(name)
+        return reader
+    names = vtkStringArray()
+    for file in files:
+        names.InsertNextValue(file)
+    reader.SetFileNames(names)
+    return reader
+
+
+@contextlib.contextmanager
+def _silence():
+    """Within, nothing of VTK is printed: readers complain about files that are not theirs, and what
+    helps them does so beside them."""
+    from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+
+    before = vtkOutputWindow.GetInstance()
+    vtkOutputWindow.SetInstance(vtkStringOutputWindow())
+    try:
+        yield
+    finally:
+        vtkOutputWindow.SetInstance(before)
+
+
+def _check_header(reader, name: str, errors: list[str]) -> None:
+    """Refuses a header that promises more points than the file can hold, before memory is taken."""
+    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+    information = reader.GetOutputInformation(0)
+    key = vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()
+    if errors or os.path.isdir(name) or not information.Has(key):
+        return
+    extent = [information.Get(key, i) for i in range(6)]
+    points = 1
+    for low, high in zip(extent[0::2], extent[1::2]):
+        points *= max(high - low + 1, 0)
+    # Headers with their data in another file are small.
+    is_whole = name.lower().endswith((".vti", ".vtk", ".nii", ".nii.gz", ".mha", ".nrrd"))
+    if is_whole and points > _MAX_POINTS_PER_BYTE * os.path.getsize(name):
+        raise OSError(
+            f"{name}: its header promises {points} points, more than {os.path.getsize(name)} bytes "
+            "can hold"
+        )
 
 
 def _place_nifti(reader, image: vtkImageData) -> None:
