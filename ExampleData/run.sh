@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the project, meshes an image, prints a report, and writes .vtp files and a picture.
+# Builds the project, meshes an image, prints a report, and writes .vtp files and pictures.
 #
 #   bash ExampleData/run.sh [IMAGE] [OPTION ...]
 #
@@ -49,4 +49,6 @@ PYTHONPATH=$(python_path "$repository/build/release") \
   --balls "$output/balls.vtp" "${options[@]}"
 say "Rendering $name"
 on_screen "$python" "$here/render.py" "$output/surface.vtp" "$output/$name.png"
+on_screen "$python" "$here/network.py" "$output/curves.vtp" "$output/balls.vtp" \
+  "$output/${name}_curves.png"
 ls -l "$output"
