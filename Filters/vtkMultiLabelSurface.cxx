@@ -147,7 +147,7 @@ void WriteSurface(
   auto addCell = [&](int label0, int label1, int patch, int curve)
   {
     labels->InsertNextTuple2(label0, label1);
-    firsts->InsertNextValue(label0);
+    firsts->InsertNextValue(std::max(label0, 0));
     patches->InsertNextValue(patch);
     curves->InsertNextValue(curve);
   };

@@ -18,11 +18,12 @@ def colour_by_name(mesh):
     ids, names = figures.GetArray("LabelIds"), figures.GetAbstractArray("LabelNames")
     table = simple.GetColorTransferFunction("Label")
     table.InterpretValuesAsCategories = 1
-    table.Annotations = ["-1", "curves"]
+    legend = []
     for entry in range(ids.GetNumberOfValues()):
         region = int(ids.GetComponent(entry, 0))
-        if region != 0:  # the background
-            table.Annotations = [*table.Annotations, str(region), names.GetValue(entry)]
+        # Triangles have a region; 0 is what curves and junctions have.
+        legend += [str(region), names.GetValue(entry) if region != 0 else "curves"]
+    table.Annotations = legend
     table.ApplyPreset("Brewer Qualitative Set3", True)
     return table
 
