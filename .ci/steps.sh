@@ -66,7 +66,9 @@ on_screen() {
   if [[ -n "${DISPLAY:-}" ]]; then
     "$@"
   else
-    xvfb-run -a "$@"
+    # Without -noreset the server starts anew when its last client leaves, and a client that comes at
+    # that moment finds nobody.
+    xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" "$@"
   fi
 }
 
