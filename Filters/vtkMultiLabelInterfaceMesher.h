@@ -21,9 +21,10 @@
  * Output: vtkPolyData in world space; verts (junctions), lines (curve edges) and triangles.
  *
  * Cell arrays:
- * - `BoundaryLabels` (int, 2 components, active scalars unless ActiveScalars says otherwise): ids of the labels on either side of a
- *   triangle. The background (0) is second, else the first is the lower. The normal points from the
- *   first to the second, also if the direction matrix is a mirror. (-1, -1) for verts and lines.
+ * - `BoundaryLabels` (int, 2 components, active scalars unless ActiveScalars says otherwise): ids
+ *   of the labels on either side of a triangle. The background (0) is second, else the first is the
+ *   lower. The normal points from the first to the second, also if the direction matrix is a mirror.
+ *   (-1, -1) for verts and lines.
  * - `Label` (int): the first of the two, the region as seen from the background; 0 for verts and
  *   lines.
  * - `PatchId` (int): connected piece of an interface; -1 for verts and lines.

@@ -42,6 +42,9 @@ _OTHERS = (".vtp", ".vtu", ".vts", ".vtr", ".vtm", ".stl", ".ply", ".obj")
 # Of the headers of images; more points than this a byte of the file is a header that lies. The best
 # compression of a constant image is about 1000 to 1.
 _MAX_POINTS_PER_BYTE = 100_000
+# Headers of text have some dozens of short lines; data after them may have any.
+_MAX_HEADER_LINE = 4096
+_MAX_HEADER_FIELDS = 1000
 
 
 def read(path: str | os.PathLike[str]) -> vtkImageData:
@@ -52,7 +55,8 @@ def read(path: str | os.PathLike[str]) -> vtkImageData:
     slices), .dcm, and whatever else VTK's image readers recognise by its content. Folders: a DICOM
     series, or slices in files of one kind in the order of their names.
 
-    Position and axes of a NIFTI file are those of its matrix.
+    Position and axes are those of a NIFTI file's matrix, and of the headers of MetaImage and NRRD
+    files, in the coordinates of the file's own kind.
 
     Raises FileNotFoundError, ValueError for a file that is no image, and OSError with the reader's
     sentence if it cannot be read.
@@ -72,8 +76,7 @@ def read(path: str | os.PathLike[str]) -> vtkImageData:
         raise ValueError(f"{name}: holds a {image.GetClassName()}, not an image")
     if errors or image is None or image.GetNumberOfPoints() == 0:
         raise OSError(f"{name}: {errors[0] if errors else 'holds no image'}")
-    if reader.IsA("vtkNIFTIImageReader"):
-        _place_nifti(reader, image)
+    _place(reader, image, name)
     return image
 
 
@@ -166,24 +169,61 @@ def _check_header(reader, name: str, errors: list[str]) -> None:
         )
 
 
-def _place_nifti(reader, image: vtkImageData) -> None:
-    """Position and axes of a NIFTI file, which VTK's reader keeps beside the image.
+def _place(reader, image: vtkImageData, name: str) -> None:
+    """Axes and, of NIFTI files, the position, which VTK's readers keep beside the image or pass
+    over."""
+    ending = name.lower().rsplit(".", 1)[-1]
+    if reader.IsA("vtkNIFTIImageReader"):
+        matrix = reader.GetSFormMatrix() or reader.GetQFormMatrix()
+        if matrix is not None:
+            columns = [[matrix.GetElement(r, c) for r in range(3)] for c in range(3)]
+            if _turn(image, columns):
+                image.SetSpacing([_length(column) for column in columns])
+                image.SetOrigin([matrix.GetElement(r, 3) for r in range(3)])
+    elif ending in ("mha", "mhd"):
+        values = _header_of(name, "=").get("transformmatrix", "").split()
+        if len(values) == 9:
+            numbers = [float(value) for value in values]
+            _turn(image, [numbers[0:3], numbers[3:6], numbers[6:9]])
+    elif ending in ("nrrd", "nhdr"):
+        vectors = _header_of(name, ":").get("space directions", "").replace(" ", "")
+        rows = [row.strip("()").split(",") for row in vectors.split(")(")]
+        if len(rows) == 3 and all(len(row) == 3 for row in rows):
+            _turn(image, [[float(value) for value in row] for row in rows])
 
-    A matrix with a shear stays unused: an image can be turned and mirrored, not sheared.
+
+def _length(vector: list[float]) -> float:
+    return sum(x * x for x in vector) ** 0.5
+
+
+def _turn(image: vtkImageData, columns: list[list[float]]) -> bool:
+    """Gives the image the axes along these vectors.
+
+    Not if there is a shear: an image can be turned and mirrored, not sheared.
     """
-    matrix = reader.GetSFormMatrix() or reader.GetQFormMatrix()
-    if matrix is None:
-        return
-    columns = [[matrix.GetElement(r, c) for r in range(3)] for c in range(3)]
-    lengths = [sum(x * x for x in column) ** 0.5 for column in columns]
+    lengths = [_length(column) for column in columns]
     if min(lengths) == 0.0:
-        return
+        return False
     axes = [[x / length for x in column] for column, length in zip(columns, lengths)]
     for a, b in ((0, 1), (1, 2), (2, 0)):
         if abs(sum(x * y for x, y in zip(axes[a], axes[b]))) > 1e-3:
-            return
+            return False
     for r in range(3):
         for c in range(3):
             image.GetDirectionMatrix().SetElement(r, c, axes[c][r])
-    image.SetSpacing(lengths)
-    image.SetOrigin([matrix.GetElement(r, 3) for r in range(3)])
+    return True
+
+
+def _header_of(name: str, mark: str) -> dict[str, str]:
+    """The fields of a header of text, up to an empty line or the one that names the data."""
+    fields = {}
+    with open(name, "rb") as file:
+        for line in file:
+            key, found, value = line[:_MAX_HEADER_LINE].decode("latin-1").partition(mark)
+            if not line.strip() or len(fields) > _MAX_HEADER_FIELDS:
+                break
+            if found:
+                fields[key.strip().lower()] = value.strip().lstrip("=")
+            if key.strip() == "ElementDataFile":
+                break
+    return fields
