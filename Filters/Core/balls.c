@@ -286,7 +286,7 @@ mlim_status mlim_balls_cover(
   }
   covering work = { .curves = curves, .options = options };
   mlim_status status = mlim_progress(context, MLIM_STAGE_BALLS, 0);
-  status = status ? status : mlim_radius_map_create(curves, options, &work.map);
+  status = status ? status : mlim_radius_map_create(curves, options, context, &work.map);
   status = status ? status : cover_until_good(&work, context);
   status = status ? status : mlim_sets_copy(&curves->sets, &work.balls.sets);
   status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, 1);
