@@ -13,7 +13,8 @@ from paraview.vtk import vtkOutputWindow, vtkStringOutputWindow
 import plugin
 
 REGIONS = 8
-# Seconds from the wish to stop to the end of the run.
+# Seconds of the processor from the wish to stop to the end of the run; not of the clock, so that a
+# busy machine does not count.
 MAX_STOP_TIME = 0.5
 
 
@@ -168,14 +169,14 @@ class TestPlugin(unittest.TestCase):
         def watch(caller, _event):
             seen.append(caller.GetProgress())
             # In the midst of refinement, not at the first event.
-            if not asked and time.monotonic() - start > 1.5:
-                asked.append(time.monotonic())
+            if not asked and time.process_time() - start > 1.5:
+                asked.append(time.process_time())
                 caller.SetAbortExecute(1)
 
         tag = algorithm.AddObserver("ProgressEvent", watch)
-        start = time.monotonic()
+        start = time.process_time()
         mesher.UpdatePipeline()
-        end = time.monotonic()
+        end = time.process_time()
         algorithm.RemoveObserver(tag)
         self.assertTrue(asked, "the run is long enough")
         self.assertLess(end - asked[0], MAX_STOP_TIME)
