@@ -39,6 +39,17 @@ def labels_of(mesher):
     return set(labels[labels >= 0].tolist())
 
 
+def through_state_file(source):
+    """The same source in a session that was loaded from a file."""
+    simple.RenameSource("the source", source)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "state.pvsm")
+        simple.SaveState(path)
+        simple.ResetSession()
+        simple.LoadState(path)
+    return simple.FindSource("the source")
+
+
 class TestPlugin(unittest.TestCase):
     def setUp(self):
         simple.ResetSession()
@@ -133,14 +144,8 @@ class TestPlugin(unittest.TestCase):
         mesher = self.mesher(FacetSize=0.07, CapBoundary=0, BackgroundMode="Complement")
         mesher.PointArrays = ["sphere1", "sphere2", "sphere3"]
         mesher.Balls = None
-        simple.RenameSource("the mesh", mesher)
         before = plugin.digest(plugin.fetch(mesher))
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "state.pvsm")
-            simple.SaveState(path)
-            simple.ResetSession()
-            simple.LoadState(path)
-        mesher = simple.FindSource("the mesh")
+        mesher = through_state_file(mesher)
         self.assertEqual(mesher.FacetSize, 0.07)
         self.assertEqual(mesher.CapBoundary, 0)
         self.assertEqual(mesher.BackgroundMode, "Complement")
@@ -150,14 +155,8 @@ class TestPlugin(unittest.TestCase):
     def test_state_file_with_balls(self):
         mesher = self.mesher(Balls=self.balls())
         mesher.Balls.EdgeSize = 0.05
-        simple.RenameSource("the mesh", mesher)
         before = plugin.digest(plugin.fetch(mesher))
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "state.pvsm")
-            simple.SaveState(path)
-            simple.ResetSession()
-            simple.LoadState(path)
-        mesher = simple.FindSource("the mesh")
+        mesher = through_state_file(mesher)
         self.assertEqual(plugin.digest(plugin.fetch(mesher)), before)
 
     def test_progress_and_abort(self):
