@@ -36,7 +36,9 @@ struct Watch
         }
         watch->Fractions.push_back(source->GetProgress());
         watch->Texts.insert(source->GetProgressText() ? source->GetProgressText() : "");
-        if (static_cast<int>(watch->Fractions.size()) == watch->AbortAt)
+        // The executive's last event comes when the output is there already.
+        if (static_cast<int>(watch->Fractions.size()) == watch->AbortAt &&
+            source->GetProgress() < 1.0)
         {
           source->SetAbortExecute(1);
         }
