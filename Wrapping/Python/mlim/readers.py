@@ -138,13 +138,16 @@ def _folder_reader(name: str):
 def _silence():
     """Within, nothing of VTK is printed: readers complain about files that are not theirs, and what
     helps them does so beside them."""
-    from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+    from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     before = vtkOutputWindow.GetInstance()
     vtkOutputWindow.SetInstance(vtkStringOutputWindow())
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
     try:
         yield
     finally:
+        vtkLogger.SetStderrVerbosity(verbosity)
         vtkOutputWindow.SetInstance(before)
 
 
