@@ -7,8 +7,6 @@
 #include "vtkMultiLabelCurveExtractor.h"
 #include "vtkMultiLabelCurveProtector.h"
 
-#include "vtkVersion.h"
-
 #include <algorithm>
 #include <set>
 
@@ -71,17 +69,6 @@ void CheckProgress()
   extractor->Update();
   CHECK(std::is_sorted(stage.Fractions.begin(), stage.Fractions.end()), "monotone");
   CHECK(stage.Texts.count("Refining the interface") == 0, "the extractor refines nothing");
-}
-
-// From 9.2 on VTK itself empties the output of an aborted filter, and the flag stays until the host
-// takes it back.
-bool IsAbortedOutput(vtkPolyData* surface)
-{
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
-  return surface->GetNumberOfCells() == 0 && surface->GetNumberOfPoints() == 0;
-#else
-  return IsTypedEmpty(surface);
-#endif
 }
 
 void CheckAbort()
