@@ -2,8 +2,9 @@
 # the shell's -e.
 # shellcheck shell=bash disable=SC2034,SC2154,SC2164
 
-# What a build needs on Debian 12 and its like.
-build_packages=(cmake ninja-build g++ libvtk9-dev libcgal-dev python3-numpy python3-vtk9)
+# What a build needs on Debian 12 and its like: of anything, and of the module for Debian's VTK.
+compile_packages=(cmake ninja-build g++ dpkg-dev libcgal-dev python3-numpy)
+build_packages=("${compile_packages[@]}" libvtk9-dev python3-vtk9)
 # Debian's VTK draws through X: a virtual screen serves where there is no display.
 screen_packages=(xvfb xauth libgl1-mesa-dri)
 # The interpreter that Debian's VTK is wrapped for; another python3 may come first on the PATH.
@@ -65,6 +66,55 @@ on_screen() {
   if [[ -n "${DISPLAY:-}" ]]; then
     "$@"
   else
-    xvfb-run -a "$@"
+    # Without -noreset the server starts anew when its last client leaves, and a client that comes at
+    # that moment finds nobody.
+    xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" "$@"
   fi
+}
+
+# What a build of the plugin needs beside that, with ParaView itself unpacked beside Debian's VTK:
+# python3-paraview and python3-vtk9 exclude each other as packages.
+paraview_packages=(paraview libopenmpi-dev openmpi-bin libdouble-conversion-dev libqt5svg5)
+paraview_archives=(paraview paraview-dev python3-paraview)
+
+# unpack_paraview FOLDER : ParaView with its headers and Python below FOLDER, unless it is there.
+unpack_paraview() {
+  local root=$1 archive part
+  if [[ -e "$root/unpacked" ]]; then
+    return 0
+  fi
+  say "Unpacking ParaView"
+  part=$(mktemp -d)
+  # The downloading user of apt-get may not read the caller's folder.
+  chmod 755 "$part"
+  (cd "$part" && apt-get download -qq "${paraview_archives[@]}")
+  mkdir -p "$root"
+  for archive in "$part"/*.deb; do
+    dpkg -x "$archive" "$root"
+  done
+  rm -r "$part"
+  touch "$root/unpacked"
+}
+
+# paraview_root : the folder above the usr that holds ParaView with its Python; nothing: the system.
+# A machine with python3-paraview has all of it.
+paraview_root() {
+  if [[ "$(dpkg-query -W -f '${db:Status-Status}' python3-paraview 2>/dev/null)" != installed ]]; then
+    echo "$repository/build/paraview-root"
+  fi
+}
+
+# build_plugin [CMAKE_OPTION...] : installs and unpacks ParaView, and builds the preset paraview.
+build_plugin() {
+  local root architecture
+  root=$(paraview_root)
+  if [[ -n "$root" ]]; then
+    install_packages "${paraview_packages[@]}"
+    unpack_paraview "$root"
+  else
+    install_packages paraview-dev "${paraview_packages[@]}"
+  fi
+  architecture=$(dpkg-architecture -q DEB_HOST_MULTIARCH)
+  build_preset paraview \
+    "-DParaView_DIR=$root/usr/lib/$architecture/cmake/paraview-5.11" "$@"
 }

@@ -2,7 +2,7 @@
 """Renders an interface surface to a picture: the whole, a cut-away, or both side by side.
 
     python3 ExampleData/render.py SURFACE.vtp PICTURE.png [--view both|whole|cutaway]
-        [--remove ID ...] [--width PIXELS] [--azimuth DEGREES] [--elevation DEGREES]
+        [--remove ID ...] [--width PIXELS] [--azimuth DEGREES] [--elevation DEGREES] [--no-edges]
 
 Interfaces with the background have their region's colour, inner interfaces a blend of their two
 regions' colours; curves are tubes, junctions small balls. The cut-away leaves out the regions that
@@ -139,7 +139,7 @@ def make_actor(polydata, colour):
     return actor
 
 
-def interface_actors(surface, removed):
+def interface_actors(surface, removed, has_edges):
     """One actor for each pair of labels, so that normals are smooth inside a pair only."""
     left_out = list(removed) + [0]
     shown = ~np.isin(surface.labels, left_out).all(axis=1)
@@ -151,7 +151,7 @@ def interface_actors(surface, removed):
         normals.ConsistencyOff()
         normals.Update()
         actor = make_actor(normals.GetOutput(), surface.pair_colour(first, second))
-        actor.GetProperty().EdgeVisibilityOn()
+        actor.GetProperty().SetEdgeVisibility(has_edges)
         actor.GetProperty().SetEdgeColor(*EDGE_COLOUR)
         actor.GetProperty().SetLineWidth(0.5 * OVERSAMPLING)
         yield actor
@@ -230,12 +230,12 @@ def view_direction(azimuth, elevation):
     return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
 
 
-def make_renderer(surface, removed, toward_viewer, viewport):
+def make_renderer(surface, removed, toward_viewer, viewport, has_edges):
     renderer = vtkRenderer()
     renderer.SetViewport(*viewport)
     renderer.SetBackground(1, 1, 1)
     for actors in (
-        interface_actors(surface, removed),
+        interface_actors(surface, removed, has_edges),
         curve_actors(surface, removed),
         junction_actors(surface),
     ):
@@ -317,6 +317,9 @@ def main():
     parser.add_argument("--width", type=int, default=1600, help="pixels")
     parser.add_argument("--azimuth", type=float, default=-52, help="degrees from x towards y")
     parser.add_argument("--elevation", type=float, default=24, help="degrees above the xy plane")
+    parser.add_argument(
+        "--edges", action=argparse.BooleanOptionalAction, default=True, help="the triangles' edges"
+    )
     options = parser.parse_args()
 
     surface = read_surface(options.surface)
@@ -327,7 +330,11 @@ def main():
     scenes = {"whole": [[]], "cutaway": [removed], "both": [[], removed]}[options.view]
     renderers = [
         make_renderer(
-            surface, scene, toward_viewer, (k / len(scenes), 0, (k + 1) / len(scenes), 1)
+            surface,
+            scene,
+            toward_viewer,
+            (k / len(scenes), 0, (k + 1) / len(scenes), 1),
+            options.edges,
         )
         for k, scene in enumerate(scenes)
     ]

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds the project, meshes an image, prints a report, and writes .vtp files and a picture.
+# Builds the project, meshes an image, prints a report, and writes .vtp files and pictures.
 #
-#   bash ExampleData/run.sh [IMAGE.vti] [OPTION VALUE ...]
+#   bash ExampleData/run.sh [IMAGE] [OPTION ...]
 #
-# IMAGE.vti  default: the eight spheres beside this script
-# OPTION     of mlim.mesh, with dashes: --facet-size 1.5; and --output FOLDER
-#            (default: build/example/<name of the image>)
+# IMAGE   default: the eight spheres beside this script
+# OPTION  of the command line (python3 -m mlim --help), as in --facet-size 1.5; and --output FOLDER
+#         (default: build/example/<name of the image>)
 #
 # Installs with apt-get the packages that are missing.
 set -euo pipefail
@@ -20,20 +20,18 @@ if [[ $# -gt 0 && "$1" != --* ]]; then
   image=$(realpath "$1")
   shift
 fi
-name=$(basename "$image" .vti)
+name=$(basename "$image")
+name=${name%%.*}
 output=$repository/build/example/$name
 options=()
 while [[ $# -gt 0 ]]; do
-  if [[ "$1" != --* || $# -lt 2 ]]; then
-    echo "expected OPTION VALUE, not: $*" >&2
-    exit 2
-  fi
-  if [[ "$1" == --output ]]; then
+  if [[ "$1" == --output && $# -gt 1 ]]; then
     output=$2
+    shift
   else
-    options+=("$1" "$2")
+    options+=("$1")
   fi
-  shift 2
+  shift
 done
 
 packages=("${build_packages[@]}")
@@ -47,7 +45,10 @@ mkdir -p "$output"
 output=$(realpath "$output")
 say "Meshing $name"
 PYTHONPATH=$(python_path "$repository/build/release") \
-  "$python" "$here/mesh.py" "$image" "$output" "${options[@]}"
+  "$python" -m mlim "$image" -o "$output/surface.vtp" --curves "$output/curves.vtp" \
+  --balls "$output/balls.vtp" "${options[@]}"
 say "Rendering $name"
 on_screen "$python" "$here/render.py" "$output/surface.vtp" "$output/$name.png"
+on_screen "$python" "$here/network.py" "$output/curves.vtp" "$output/balls.vtp" \
+  "$output/${name}_curves.png"
 ls -l "$output"

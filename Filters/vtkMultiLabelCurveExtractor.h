@@ -8,7 +8,7 @@
  * are the junctions in which curves end. A closed curve without a junction repeats its first point.
  *
  * Cell arrays, for verts and lines:
- * - `CurveId` (int): 0, 1, ... for curves; -1 for junctions.
+ * - `CurveId` (int, active scalars): 0, 1, ... for curves; -1 for junctions.
  * - `LabelSet` (int, as many components as the largest set has codes): ids of the labels that meet
  *   there, ascending, padded with -1. The outside is background, which is 0.
  * - `LabelSetSize` (int): how many of them are not padding.

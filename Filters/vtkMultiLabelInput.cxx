@@ -180,12 +180,21 @@ std::vector<Input::Candidate> Input::ReadCandidates(vtkImageData* image, const C
   vtkFieldData* arrays = this->IsCellCentred ? static_cast<vtkFieldData*>(image->GetCellData())
                                              : static_cast<vtkFieldData*>(image->GetPointData());
   const std::vector<std::string> enabled = EnabledNames(choice.Arrays);
+  vtkFieldData* others = this->IsCellCentred ? static_cast<vtkFieldData*>(image->GetPointData())
+                                             : static_cast<vtkFieldData*>(image->GetCellData());
   for (const std::string& name : enabled)
   {
-    if (!arrays->HasArray(name.c_str()))
+    if (arrays->HasArray(name.c_str()))
+    {
+      continue;
+    }
+    if (!others->HasArray(name.c_str()))
     {
       throw Refusal("The image has no array '" + name + "', which is selected.");
     }
+    this->Warnings.push_back("The array '" + name + "' is one of the " +
+                             (this->IsCellCentred ? "points" : "cells") +
+                             ", unlike the other selected ones, and is not used.");
   }
   std::vector<Candidate> singles;
   std::vector<int> multiples;

@@ -14,6 +14,9 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
+#include <cmath>
+
 using namespace vtkMultiLabel;
 
 vtkStandardNewMacro(vtkMultiLabelInterfaceMesher);
@@ -89,6 +92,8 @@ void vtkMultiLabelInterfaceMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumComponentVoxels: " << this->MinimumComponentVoxels << "\n";
   os << indent << "VertexLimit: " << this->VertexLimit << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "ActiveScalars: " << (this->ActiveScalars == Label ? "Label" : "BoundaryLabels")
+     << "\n";
 }
 
 void vtkMultiLabelInterfaceMesher::SetBallsData(vtkPolyData* balls)
@@ -104,6 +109,22 @@ int vtkMultiLabelInterfaceMesher::FillInputPortInformation(int port, vtkInformat
   }
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkMultiLabelInterfaceMesher::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  vtkInformation* info = inputs[0]->GetInformationObject(0);
+  double spacing[3] = { 0.0, 0.0, 0.0 };
+  if (info && info->Has(vtkDataObject::SPACING()))
+  {
+    info->Get(vtkDataObject::SPACING(), spacing);
+  }
+  std::transform(spacing, spacing + 3, spacing, [](double s) { return std::abs(s); });
+  const double unit = mlim_spacing_unit(spacing);
+  this->FacetSizeRange[0] = unit;
+  this->FacetSizeRange[1] = 3.0 * unit;
   return 1;
 }
 
@@ -190,6 +211,7 @@ void vtkMultiLabelInterfaceMesher::Mesh(vtkImageData* image, vtkPolyData* balls,
   SurfaceChoice shown;
   shown.CapBoundary = this->CapBoundary;
   shown.OutputCurves = this->OutputCurves;
+  shown.IsLabelActive = this->ActiveScalars == Label;
   shown.IsSinglePrecision = this->OutputPointsPrecision == SINGLE_PRECISION;
   WriteSurface(mesh, setting, shown, out);
   WriteSetting(setting, out->GetFieldData());

@@ -21,9 +21,12 @@
  * Output: vtkPolyData in world space; verts (junctions), lines (curve edges) and triangles.
  *
  * Cell arrays:
- * - `BoundaryLabels` (int, 2 components, active scalars): ids of the labels on either side of a
- *   triangle. The background (0) is second, else the first is the lower. The normal points from the
- *   first to the second, also if the direction matrix is a mirror. (-1, -1) for verts and lines.
+ * - `BoundaryLabels` (int, 2 components, active scalars unless ActiveScalars says otherwise): ids
+ *   of the labels on either side of a triangle. The background (0) is second, else the first is the
+ *   lower. The normal points from the first to the second, also if the direction matrix is a mirror.
+ *   (-1, -1) for verts and lines.
+ * - `Label` (int): the first of the two, the region as seen from the background; 0 for verts and
+ *   lines.
  * - `PatchId` (int): connected piece of an interface; -1 for verts and lines.
  * - `CurveId` (int): curve of a line; -1 for the others.
  * Point arrays:
@@ -88,6 +91,13 @@ public:
     Bisection ///< The paper's: looks at midpoints only, for comparison.
   };
 
+  /** Which cell array of the output is its active scalars. */
+  enum ActiveScalarsModes
+  {
+    BoundaryLabels, ///< Both labels, as vtkSurfaceNets3D has them.
+    Label           ///< One value a cell, for hosts that colour by the active scalars.
+  };
+
   ///@{
   /** Protecting balls for the second port. nullptr, or no connection: made by this filter. */
   void SetBallsConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
@@ -104,6 +114,12 @@ public:
   vtkSetClampMacro(FacetSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(FacetSize, double);
   ///@}
+
+  /**
+   * Sensible values of FacetSize for the input, in world units: from one to three spacings, the
+   * default in the middle. Known after UpdateInformation; 0 and 0 without an input.
+   */
+  vtkGetVector2Macro(FacetSizeRange, double);
 
   ///@{
   /**
@@ -211,11 +227,21 @@ public:
   vtkGetMacro(OutputPointsPrecision, int);
   ///@}
 
+  ///@{
+  /** BoundaryLabels or Label. Default: BoundaryLabels; ParaView asks for Label. */
+  vtkSetClampMacro(ActiveScalars, int, BoundaryLabels, Label);
+  vtkGetMacro(ActiveScalars, int);
+  void SetActiveScalarsToBoundaryLabels() { this->SetActiveScalars(BoundaryLabels); }
+  void SetActiveScalarsToLabel() { this->SetActiveScalars(Label); }
+  ///@}
+
 protected:
   vtkMultiLabelInterfaceMesher();
   ~vtkMultiLabelInterfaceMesher() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
@@ -225,6 +251,7 @@ private:
   void Mesh(vtkImageData* image, vtkPolyData* balls, vtkPolyData* out);
 
   double FacetSize = 0.0;
+  double FacetSizeRange[2] = { 0.0, 0.0 };
   double FacetRadiusEdgeRatio = 1.0;
   double FacetDistance = 0.0;
   double VolumeTolerance = 0.02;
@@ -237,6 +264,7 @@ private:
   vtkIdType MinimumComponentVoxels = 30;
   vtkIdType VertexLimit = 20000000;
   int OutputPointsPrecision = DOUBLE_PRECISION;
+  int ActiveScalars = BoundaryLabels;
 };
 
 #endif

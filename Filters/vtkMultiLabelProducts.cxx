@@ -239,7 +239,7 @@ void WriteCurves(const mlim_curves& curves, const Setting& setting, vtkPolyData*
   }
   out->SetVerts(verts);
   out->SetLines(lines);
-  out->GetCellData()->AddArray(curveIds);
+  out->GetCellData()->SetScalars(curveIds);
   sets.Attach(out->GetCellData());
 }
 

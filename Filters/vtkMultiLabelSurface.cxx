@@ -138,6 +138,8 @@ void WriteSurface(
   vtkNew<vtkIntArray> labels;
   labels->SetName("BoundaryLabels");
   labels->SetNumberOfComponents(2);
+  vtkNew<vtkIntArray> firsts;
+  firsts->SetName("Label");
   vtkNew<vtkIntArray> patches;
   patches->SetName("PatchId");
   vtkNew<vtkIntArray> curves;
@@ -145,6 +147,7 @@ void WriteSurface(
   auto addCell = [&](int label0, int label1, int patch, int curve)
   {
     labels->InsertNextTuple2(label0, label1);
+    firsts->InsertNextValue(std::max(label0, 0));
     patches->InsertNextValue(patch);
     curves->InsertNextValue(curve);
   };
@@ -178,6 +181,11 @@ void WriteSurface(
   out->SetLines(lines);
   out->SetPolys(polys);
   out->GetCellData()->SetScalars(labels);
+  out->GetCellData()->AddArray(firsts);
+  if (choice.IsLabelActive)
+  {
+    out->GetCellData()->SetActiveScalars("Label");
+  }
   out->GetCellData()->AddArray(patches);
   out->GetCellData()->AddArray(curves);
 }

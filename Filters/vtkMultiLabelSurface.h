@@ -18,6 +18,7 @@ struct SurfaceChoice
 {
   bool CapBoundary = true;
   bool OutputCurves = true;
+  bool IsLabelActive = false; // the array Label is the active scalars, not BoundaryLabels
   bool IsSinglePrecision = false;
 };
 

@@ -253,9 +253,12 @@ static mlim_status cover_until_good(covering* work, mlim_context* context)
   mlim_status status = MLIM_OK;
   for (int round = 0; round < MAX_ROUNDS; ++round)
   {
+    const double done = (double)round / (MAX_ROUNDS + 1);
     work->fault_count = 0;
     work->lowered_count = 0;
+    status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
     status = status ? status : cover_all(work);
+    status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
     status =
       status ? status
              : mlim_balls_examine(work->curves, &work->balls, work->options, lower_at_fault, work);
@@ -283,7 +286,7 @@ mlim_status mlim_balls_cover(
   }
   covering work = { .curves = curves, .options = options };
   mlim_status status = mlim_progress(context, MLIM_STAGE_BALLS, 0);
-  status = status ? status : mlim_radius_map_create(curves, options, &work.map);
+  status = status ? status : mlim_radius_map_create(curves, options, context, &work.map);
   status = status ? status : cover_until_good(&work, context);
   status = status ? status : mlim_sets_copy(&curves->sets, &work.balls.sets);
   status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, 1);

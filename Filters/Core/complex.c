@@ -9,7 +9,8 @@
 
 enum
 {
-  MAX_CROSSINGS = 16 /* on one dual; more of them change nothing: it is refined anyway */
+  MAX_CROSSINGS = 16,     /* on one dual; more of them change nothing: it is refined anyway */
+  LOOK_EVERY_CELLS = 4096 /* cells between two looks at the host: about 20 ms */
 };
 
 mlim_status mlim_complex_create(
@@ -512,6 +513,11 @@ mlim_status mlim_complex_record_all(mlim_complex* complex, mlim_context* context
       {
         return mlim_fail_memory(context, "the restricted facets");
       }
+    }
+    status = k % LOOK_EVERY_CELLS == 0 ? mlim_progress(context, MLIM_STAGE_SURFACE, 0) : MLIM_OK;
+    if (status != MLIM_OK)
+    {
+      return status;
     }
   }
   return MLIM_OK;

@@ -381,15 +381,28 @@ static void layer_body(void* data, size_t begin, size_t end)
 
 /* ---- all of it ---- */
 
+double mlim_spacing_unit(const double spacing[3])
+{
+  if (spacing[0] == spacing[1] && spacing[1] == spacing[2])
+  {
+    return spacing[0];
+  }
+  /* Of numbers near 1, so that powers of two for a spacing give all its digits. */
+  int exponent;
+  (void)frexp(spacing[0], &exponent);
+  double volume = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    volume *= ldexp(spacing[k], 1 - exponent);
+  }
+  return ldexp(cbrt(volume), exponent - 1);
+}
+
 static mlim_status start_field(
   const mlim_samples* samples, mlim_context* context, mlim_field* field)
 {
   const mlim_grid* grid = samples->grid;
   mlim_field_grid* g = &field->grid;
-  /* Of numbers near 1, so that powers of two for a spacing give all its digits. */
-  int exponent;
-  (void)frexp(grid->spacing[0], &exponent);
-  double volume = 1;
   size_t points = 1;
   size_t bricks = 1;
   for (int k = 0; k < 3; ++k)
@@ -400,11 +413,10 @@ static mlim_status start_field(
     g->size[k] = g->cells[k] * g->spacing[k];
     field->inverse_spacing[k] = 1 / g->spacing[k];
     field->bricks[k] = (g->cells[k] + BRICK - 1) / BRICK;
-    volume *= ldexp(g->spacing[k], 1 - exponent);
     points *= (size_t)g->dims[k];
     bricks *= (size_t)field->bricks[k];
   }
-  g->unit = ldexp(cbrt(volume), exponent - 1);
+  g->unit = mlim_spacing_unit(g->spacing);
   g->min_spacing = mlim_min(g->spacing[0], mlim_min(g->spacing[1], g->spacing[2]));
   field->outside_label = samples->outside_label;
   field->label_count =

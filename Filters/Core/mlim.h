@@ -144,6 +144,10 @@ int32_t mlim_field_label(const mlim_field* field, const double point[3]);
 /* Label sets of curves and balls also name the face of the box on which they lie: code
    label_count + face, faces being 0 .. 5 for -x +x -y +y -z +z. */
 
+/* The length of which the defaults are multiples: the cube root of a voxel's volume, and the spacing
+   itself where it is the same along all axes. Spacings finite and above 0. */
+double mlim_spacing_unit(const double spacing[3]);
+
 /* ---- options ------------------------------------------------------------------------------- */
 
 typedef enum mlim_oracle_mode

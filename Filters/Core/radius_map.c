@@ -6,6 +6,11 @@
 #include <math.h>
 #include <string.h>
 
+enum
+{
+  LOOK_EVERY_SAMPLES = 4096 /* samples between two looks at the host: about 20 ms */
+};
+
 /* Balls on two curves at distance d may have radii of this times d: just below a half, so that they
    are disjoint. */
 static const double DISTANCE_SHARE = 0.47;
@@ -311,8 +316,8 @@ static void limit_by_length(mlim_radius_map* map, size_t curve)
   }
 }
 
-mlim_status mlim_radius_map_create(
-  const mlim_curves* curves, const mlim_options* options, mlim_radius_map* out)
+mlim_status mlim_radius_map_create(const mlim_curves* curves, const mlim_options* options,
+  mlim_context* context, mlim_radius_map* out)
 {
   const double step = SAMPLE_SHARE * options->edge_size;
   mlim_radius_map map = { .curves = curves,
@@ -336,6 +341,11 @@ mlim_status mlim_radius_map_create(
     for (size_t s = map.offsets[c]; s < map.offsets[c + 1]; ++s)
     {
       limit_sample(&map, &index, c, s);
+      status = s % LOOK_EVERY_SAMPLES == 0 ? mlim_progress(context, MLIM_STAGE_BALLS, 0) : MLIM_OK;
+      if (status)
+      {
+        goto done;
+      }
     }
   }
   for (size_t j = 0; j < curves->junction_count; ++j)

@@ -22,8 +22,9 @@ typedef struct mlim_radius_map
   double* junction_limits;
 } mlim_radius_map;
 
-mlim_status mlim_radius_map_create(
-  const mlim_curves* curves, const mlim_options* options, mlim_radius_map* out);
+/* Looks at the host between samples. */
+mlim_status mlim_radius_map_create(const mlim_curves* curves, const mlim_options* options,
+  mlim_context* context, mlim_radius_map* out);
 void mlim_radius_map_free(mlim_radius_map* map);
 
 /* Restores the grading after limits were lowered. */

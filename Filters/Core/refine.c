@@ -10,8 +10,9 @@
 
 enum
 {
-  REPORT_EVERY = 256, /* insertions between two looks at the host: about 5 ms */
-  JUDGE_EVERY = 65536 /* facets judged between two looks: about 20 ms */
+  LOOK_EVERY_BALLS = 256, /* balls inserted between two looks at the host: about 5 ms */
+  REPORT_EVERY = 256,     /* insertions between two looks at the host: about 5 ms */
+  JUDGE_EVERY = 65536     /* facets judged between two looks: about 20 ms */
 };
 
 /* ---- start ---- */
@@ -67,6 +68,10 @@ static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mli
     else if (status == MLIM_OK)
     {
       status = mlim_complex_commit(&r->complex, context);
+    }
+    if (status == MLIM_OK && k % LOOK_EVERY_BALLS == 0)
+    {
+      status = mlim_progress(context, MLIM_STAGE_SURFACE, 0);
     }
   }
   mlim_release(order);

@@ -107,6 +107,12 @@ static void test_counts(const mlim_field* field)
 static void test_defaults(const mlim_grid* plain)
 {
   const double spacing[3] = { 0.5, 1, 2 }; /* a voxel of volume 1 */
+  CHECK(mlim_spacing_unit(spacing) == 1);
+  for (int n = 1; n < 50; ++n)
+  {
+    const double cube[3] = { 1.0 / n, 1.0 / n, 1.0 / n };
+    CHECK(mlim_spacing_unit(cube) == cube[0]);
+  }
   for (double scale = 1; scale < 10; scale += 4)
   {
     mlim_grid grid = *plain;

@@ -16,6 +16,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkVersion.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -158,7 +159,7 @@ inline bool IsTyped(vtkPolyData* surface)
 {
   const vtkIdType cells = surface->GetNumberOfCells();
   bool result = surface->GetPoints() != nullptr;
-  for (const char* name : { "BoundaryLabels", "PatchId", "CurveId" })
+  for (const char* name : { "BoundaryLabels", "Label", "PatchId", "CurveId" })
   {
     vtkDataArray* array = surface->GetCellData()->GetArray(name);
     result =
@@ -178,6 +179,17 @@ inline bool IsTyped(vtkPolyData* surface)
 inline bool IsTypedEmpty(vtkPolyData* surface)
 {
   return IsTyped(surface) && surface->GetNumberOfCells() == 0 && surface->GetNumberOfPoints() == 0;
+}
+
+// From 9.2 on VTK itself empties the output of an aborted filter, and the flag stays until the host
+// takes it back.
+inline bool IsAbortedOutput(vtkPolyData* surface)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
+  return surface->GetNumberOfCells() == 0 && surface->GetNumberOfPoints() == 0;
+#else
+  return IsTypedEmpty(surface);
+#endif
 }
 
 // The same cells, and points that differ by less than the tolerance; 0: not at all.

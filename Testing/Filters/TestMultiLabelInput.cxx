@@ -118,6 +118,23 @@ void CheckCells(vtkPolyData* expected)
     image->GetCellData()->AddArray(MakeArray<vtkFloatArray>(names[label], ValuesOf(label)));
   }
   CHECK(AreSame(expected, MeshOf(image)), "points at the cells' centres");
+
+  // A user interface that offers all arrays selects those of the cells along.
+  auto both = MakeImage();
+  vtkNew<vtkFloatArray> cells;
+  cells->SetName("of cells");
+  cells->SetNumberOfTuples(both->GetNumberOfCells());
+  cells->Fill(1.0);
+  both->GetCellData()->AddArray(cells);
+  auto mesher = MesherOf(both);
+  for (const char* name : { "000_Background", "first", "second", "of cells" })
+  {
+    mesher->GetPointArraySelection()->EnableArray(name);
+  }
+  Messages messages(mesher);
+  mesher->Update();
+  CHECK(Contains(messages.Warnings, "'of cells' is one of the cells"), messages.Warnings);
+  CHECK(AreSame(expected, mesher->GetOutput()), "arrays of the points and of the cells");
 }
 
 void CheckExtent(vtkPolyData* expected)

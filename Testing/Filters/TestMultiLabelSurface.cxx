@@ -303,9 +303,32 @@ void CheckOptions()
          "BackgroundArrayName", "TieBreaking", "UnseenLabels: Keep", "JunctionMergeTolerance",
          "FacetSize: 1", "FacetRadiusEdgeRatio", "FacetDistance", "VolumeTolerance: 0.02",
          "EdgeSize", "BallRadiusScale", "CrossingTolerance", "OracleMode", "CapBoundary",
-         "OutputCurves", "MinimumComponentVoxels", "VertexLimit: 60", "OutputPointsPrecision" })
+         "OutputCurves", "MinimumComponentVoxels", "VertexLimit: 60", "OutputPointsPrecision",
+         "ActiveScalars: BoundaryLabels" })
   {
     CHECK(Contains(text.str(), name), name);
+  }
+}
+
+// What a user interface asks for: a range of sizes before the run, one scalar to colour by.
+void CheckUserInterface()
+{
+  vtkNew<vtkMultiLabelInterfaceMesher> mesher;
+  CHECK(mesher->GetFacetSizeRange()[0] == 0.0 && mesher->GetFacetSizeRange()[1] == 0.0, "");
+  auto image = MakeImage();
+  image->SetSpacing(0.5, 2.0, 1.0);
+  mesher->SetInputData(image);
+  mesher->UpdateInformation();
+  CHECK(mesher->GetFacetSizeRange()[0] == 1.0 && mesher->GetFacetSizeRange()[1] == 3.0, "");
+  mesher->SetActiveScalarsToLabel();
+  mesher->Update();
+  vtkCellData* arrays = mesher->GetOutput()->GetCellData();
+  CHECK(arrays->GetScalars() == arrays->GetArray("Label"), "");
+  for (vtkIdType c = 0; c < mesher->GetOutput()->GetNumberOfCells(); ++c)
+  {
+    const double first = arrays->GetArray("BoundaryLabels")->GetComponent(c, 0);
+    CHECK(
+      arrays->GetScalars()->GetComponent(c, 0) == std::max(first, 0.0), "0 is a line or a vert");
   }
 }
 
@@ -317,5 +340,6 @@ int TestMultiLabelSurface(int, char*[])
   CheckPlacements();
   CheckCaps();
   CheckOptions();
+  CheckUserInterface();
   return Result();
 }

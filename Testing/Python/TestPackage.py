@@ -106,6 +106,26 @@ class TestMesh(unittest.TestCase):
         with self.assertRaises(ZeroDivisionError):
             mlim.mesh(make_image(), progress=lambda fraction, _: 1 / 0)
 
+    def test_label_map(self):
+        image = vtkImageData()
+        image.SetDimensions(4, 4, 4)
+        labels = numpy_to_vtk(np.arange(64, dtype=np.int16), deep=True)
+        labels.SetName("ids")
+        image.GetPointData().SetScalars(labels)
+        with self.assertRaisesRegex(mlim.MeshError, "'ids': a label map"):
+            mlim.mesh(image)
+        # With a background it is one indicator function, as soft masks are.
+        self.assertEqual(labels_of(mlim.mesh(image, background=31.5)), {0, 1})
+
+    def test_stages(self):
+        image = make_image()
+        covered = mlim.balls(mlim.curves(image))
+        self.assertEqual(digest(mlim.mesh(image, balls=covered)), digest(mlim.mesh(image)))
+
+    def test_warnings(self):
+        with self.assertWarnsRegex(mlim.MeshWarning, "vertex limit of 120"):
+            mlim.mesh(make_image(), vertex_limit=120)
+
     def test_report(self):
         surface = mlim.mesh(make_image())
         text = mlim.report(surface)
@@ -159,6 +179,26 @@ class TestFiles(unittest.TestCase):
         center = np.array(surface.GetCenter())
         np.testing.assert_allclose(center, 2 * 9.6 + np.array([1, 2, 3]), atol=0.2)
 
+    def test_axes_in_headers(self):
+        """The file's first axis along y, the second along -x, the third along z."""
+        values = vtk_to_numpy(make_ball().GetPointData().GetScalars()).astype("<f4").tobytes()
+        meta = (
+            "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+            "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 1 2 3\nElementSpacing = 2 2 2\n"
+            "DimSize = 20 20 20\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n"
+        )
+        nrrd = (
+            "NRRD0004\ntype: float\ndimension: 3\nspace: right-anterior-superior\n"
+            "sizes: 20 20 20\nspace directions: (0,2,0) (-2,0,0) (0,0,2)\n"
+            "space origin: (1,2,3)\nendian: little\nencoding: raw\n\n"
+        )
+        for name, header in (("image.mha", meta), ("image.nrrd", nrrd)):
+            with open(self.path(name), "wb") as file:
+                file.write(header.encode() + values)
+            center = mlim.mesh(self.path(name), background=0).GetCenter()
+            expected = (1 - 2 * 9.6, 2 + 2 * 9.6, 3 + 2 * 9.6)
+            np.testing.assert_allclose(center, expected, atol=0.2, err_msg=name)
+
     def test_nifti(self):
         matrix = vtkMatrix4x4()
         # x to the left, y and z exchanged, and a position: all in the file's matrix.
@@ -182,7 +222,9 @@ class TestFiles(unittest.TestCase):
     def test_refused(self):
         with self.assertRaisesRegex(FileNotFoundError, "none.vti"):
             mlim.mesh(self.path("none.vti"))
-        with self.assertRaisesRegex(ValueError, "image.txt"):
+        with open(self.path("image.txt"), "w", encoding="ascii") as file:
+            file.write("no image")
+        with self.assertRaisesRegex(ValueError, "image.txt: not an image"):
             mlim.read(self.path("image.txt"))
         with open(self.path("broken.vti"), "w", encoding="ascii") as file:
             file.write("no image")

@@ -1,26 +1,28 @@
-"""An interface mesh in one call."""
+"""A mesh, its curves or its balls in one call."""
 
 from __future__ import annotations
 
 import os
-import sys
-from typing import TYPE_CHECKING, Callable, Iterable
+from typing import TYPE_CHECKING, Iterable
 
-from .readers import _collect_errors, read
-from .vtkMultiLabelInterfaceMesher import vtkMultiLabelInterfaceMesher
+from vtkmodules.util.vtkConstants import VTK_DOUBLE, VTK_FLOAT
+
+from .readers import read
+from .running import MeshError, Progress, update
+from .vtkMultiLabelInterfaceMesher import (
+    vtkMultiLabelCurveExtractor,
+    vtkMultiLabelCurveProtector,
+    vtkMultiLabelInterfaceMesher,
+)
 
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 
-Progress = Callable[[float, str], object]
-
-
-class MeshError(RuntimeError):
-    """The image or an option cannot be used, or meshing failed; the text says why."""
+    Image = vtkImageData | str | os.PathLike[str]
 
 
 def mesh(
-    image: vtkImageData | str | os.PathLike[str],
+    image: Image,
     arrays: Iterable[str] | None = None,
     background: str | float | None = None,
     *,
@@ -60,17 +62,13 @@ def mesh(
         function: called with the fraction done and the stage's name, and stops the run by
         returning False.
 
-    Raises MeshError with the filter's sentence, also if `progress` stopped the run.
+    Raises MeshError with the filter's sentence, also if `progress` stopped the run, and
+    KeyboardInterrupt within half a second of Ctrl-C. Warnings are of the category MeshWarning.
     """
-    if isinstance(image, (str, os.PathLike)):
-        image = read(image)
     mesher = vtkMultiLabelInterfaceMesher()
-    mesher.SetInputData(image)
+    _set_input(mesher, image, arrays, background)
     if balls is not None:
         mesher.SetBallsData(balls)
-    for name in [arrays] if isinstance(arrays, str) else arrays or ():
-        mesher.GetPointArraySelection().EnableArray(name)
-    _set_background(mesher, background)
     mesher.SetFacetSize(facet_size)
     mesher.SetFacetRadiusEdgeRatio(facet_radius_edge_ratio)
     mesher.SetFacetDistance(facet_distance)
@@ -80,8 +78,7 @@ def mesh(
     mesher.SetCrossingTolerance(crossing_tolerance)
     mesher.SetJunctionMergeTolerance(junction_merge_tolerance)
     mesher.SetOracleMode(_index("oracle_mode", oracle_mode, ("exact", "bisection")))
-    mesher.SetTieBreaking(_index("tie_breaking", tie_breaking, ("smooth", "lowest_index")))
-    mesher.SetUnseenLabels(_index("unseen_labels", unseen_labels, ("keep", "drop")))
+    _set_labels(mesher, tie_breaking, unseen_labels)
     mesher.SetCapBoundary(cap_boundary)
     mesher.SetOutputCurves(output_curves)
     if minimum_component_voxels is not None:
@@ -90,7 +87,81 @@ def mesh(
         mesher.SetVertexLimit(vertex_limit)
     if single_precision:
         mesher.SetOutputPointsPrecision(mesher.SINGLE_PRECISION)
-    return _run(mesher, progress)
+    update(mesher, progress)
+    return mesher.GetOutput()
+
+
+def curves(
+    image: Image,
+    arrays: Iterable[str] | None = None,
+    background: str | float | None = None,
+    *,
+    junction_merge_tolerance: float = 0.0,
+    tie_breaking: str = "smooth",
+    unseen_labels: str = "keep",
+    progress: bool | Progress | None = None,
+) -> vtkPolyData:
+    """The curves where three or more labels meet, as vtkMultiLabelCurveExtractor finds them.
+
+    The arguments mean what they mean for mlim.mesh, and so do the exceptions.
+    """
+    extractor = vtkMultiLabelCurveExtractor()
+    _set_input(extractor, image, arrays, background)
+    extractor.SetJunctionMergeTolerance(junction_merge_tolerance)
+    _set_labels(extractor, tie_breaking, unseen_labels)
+    update(extractor, progress)
+    return extractor.GetOutput()
+
+
+def balls(
+    curves: vtkPolyData,
+    *,
+    edge_size: float = 0.0,
+    facet_distance: float = 0.0,
+    ball_radius_scale: float = 1.0,
+    progress: bool | Progress | None = None,
+) -> vtkPolyData:
+    """Protecting balls on the output of mlim.curves, as vtkMultiLabelCurveProtector places them.
+
+    Lengths are in world units; edge_size 0: twice the image's spacing; facet_distance 0: an eighth
+    of edge_size. Exceptions as for mlim.mesh.
+    """
+    protector = vtkMultiLabelCurveProtector()
+    protector.SetInputData(curves)
+    protector.SetEdgeSize(edge_size)
+    protector.SetFacetDistance(facet_distance)
+    protector.SetBallRadiusScale(ball_radius_scale)
+    update(protector, progress)
+    return protector.GetOutput()
+
+
+def _set_input(
+    algorithm, image: Image, arrays: Iterable[str] | None, background: str | float | None
+) -> None:
+    if isinstance(image, (str, os.PathLike)):
+        image = read(image)
+    names = [arrays] if isinstance(arrays, str) else list(arrays or ())
+    if background is None:
+        _refuse_label_map(image, names)
+    algorithm.SetInputData(image)
+    for name in names:
+        algorithm.GetPointArraySelection().EnableArray(name)
+    _set_background(algorithm, background)
+
+
+def _refuse_label_map(image: vtkImageData, names: list[str]) -> None:
+    """A single integer array is a label map, whose values are no indicator function."""
+    for arrays in (image.GetPointData(), image.GetCellData()):
+        used = [arrays.GetArray(i) for i in range(arrays.GetNumberOfArrays())]
+        used = [a for a in used if a is not None and (not names or a.GetName() in names)]
+        if len(used) == 1 and used[0].GetNumberOfComponents() == 1:
+            if used[0].GetDataType() not in (VTK_FLOAT, VTK_DOUBLE):
+                raise MeshError(
+                    f"The image has one array of integers, '{used[0].GetName()}': a label map? "
+                    "One array for each label is needed, or a background beside this one."
+                )
+        if used:
+            return
 
 
 def _index(name: str, value: str, values: tuple[str, ...]) -> int:
@@ -99,48 +170,18 @@ def _index(name: str, value: str, values: tuple[str, ...]) -> int:
     return values.index(value)
 
 
-def _set_background(mesher, background: str | float | None) -> None:
+def _set_labels(algorithm, tie_breaking: str, unseen_labels: str) -> None:
+    algorithm.SetTieBreaking(_index("tie_breaking", tie_breaking, ("smooth", "lowest_index")))
+    algorithm.SetUnseenLabels(_index("unseen_labels", unseen_labels, ("keep", "drop")))
+
+
+def _set_background(algorithm, background: str | float | None) -> None:
     if background is None:
         return
     if not isinstance(background, str):
-        mesher.SetBackgroundModeToConstant()
-        mesher.SetBackgroundValue(float(background))
+        algorithm.SetBackgroundModeToConstant()
+        algorithm.SetBackgroundValue(float(background))
     elif background == "complement":
-        mesher.SetBackgroundModeToComplement()
+        algorithm.SetBackgroundModeToComplement()
     else:
-        mesher.SetBackgroundArrayName(background)
-
-
-def _run(mesher, progress: bool | Progress | None) -> vtkPolyData:
-    errors: list[str] = []
-    _collect_errors(mesher, errors)
-    if progress is None:
-        progress = sys.stderr is not None and sys.stderr.isatty()
-    show = _print_progress if progress is True else progress or None
-    raised: list[BaseException] = []
-
-    def report_progress(caller, _event) -> None:
-        try:
-            if show(caller.GetProgress(), caller.GetProgressText() or "") is False:
-                caller.SetAbortExecute(True)
-        except BaseException as error:  # VTK would print it and go on
-            raised.append(error)
-            caller.SetAbortExecute(True)
-
-    if show is not None:
-        mesher.AddObserver("ProgressEvent", report_progress)
-    mesher.Update()
-    if show is _print_progress:
-        print(file=sys.stderr)
-    if raised:
-        raise raised[0]
-    if errors:
-        raise MeshError(errors[0])
-    if mesher.GetAbortExecute():
-        raise MeshError("Stopped by the progress function.")
-    surface = mesher.GetOutput()
-    return surface
-
-
-def _print_progress(fraction: float, stage: str) -> None:
-    print(f"\r{stage:<32} {fraction:4.0%}", end="", file=sys.stderr, flush=True)
+        algorithm.SetBackgroundArrayName(background)
