@@ -1,0 +1,354 @@
+/* Steps that look for the best place of one vertex. The cells round it are a hull of faces, seen from
+   it; where the worst of them becomes best is found by climbing a smooth stand-in of the worst. */
+#include "exchange.h"
+
+#include "memory.h"
+#include "vector.h"
+
+#include <math.h>
+#include <string.h>
+
+enum
+{
+  MAX_CLIMBS = 5,
+  MAX_HALVINGS = 6,
+  MAX_CAVITY = 48, /* cells that a new vertex may take out */
+  MAX_FACES = 2 * MAX_CAVITY + 2
+};
+
+/* The first step of a climb, as part of the distance to the nearest vertex of the hull. */
+static const double FIRST_STEP = 0.4;
+/* Length for derivatives, as part of the same. */
+static const double DERIVATIVE_STEP = 1e-4;
+/* How much cells above the worst count in the climb's direction: e to the minus this times the
+   difference of shapes. Less blurs the worst, more stalls where two cells are equally bad. */
+static const double SHARPNESS = 12;
+static const double LEAST_GAIN = 1e-3;
+
+static double worst_new(const mlim_solid* solid, mlim_solid_change* change)
+{
+  double worst = INFINITY;
+  for (size_t c = 0; c < change->new_count; ++c)
+  {
+    change->new_shapes[c] = mlim_solid_shape(solid, change->new_cells[c]);
+    worst = mlim_min(worst, change->new_shapes[c]);
+  }
+  return worst;
+}
+
+static double smooth_worst(const mlim_solid* solid, const mlim_solid_change* change, double worst)
+{
+  double sum = 0;
+  for (size_t c = 0; c < change->new_count; ++c)
+  {
+    /* What is far above the worst has no say. */
+    if (change->new_shapes[c] - worst < 0.5)
+    {
+      sum += exp(-SHARPNESS * (mlim_solid_shape(solid, change->new_cells[c]) - worst));
+    }
+  }
+  return sum;
+}
+
+static double nearest_distance(
+  const mlim_solid* solid, const mlim_solid_change* change, int32_t vertex)
+{
+  const double* point = solid->points + 3 * (size_t)vertex;
+  double least = INFINITY;
+  for (size_t c = 0; c < change->new_count; ++c)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      const int32_t v = change->new_cells[c][k];
+      if (v != vertex)
+      {
+        least = mlim_min(least, mlim_distance_squared(point, solid->points + 3 * (size_t)v));
+      }
+    }
+  }
+  return sqrt(least);
+}
+
+/* Direction in which the worst cells become better. Returns 0 where there is none. */
+static int find_direction(const mlim_solid* solid, const mlim_solid_change* change, int32_t vertex,
+  double worst, double step, double out[3])
+{
+  double* point = solid->points + 3 * (size_t)vertex;
+  const double here = smooth_worst(solid, change, worst);
+  for (int k = 0; k < 3; ++k)
+  {
+    const double x = point[k];
+    point[k] = x + step;
+    out[k] = here - smooth_worst(solid, change, worst);
+    point[k] = x;
+  }
+  const double length = sqrt(mlim_dot(out, out));
+  if (!(length > 0) || !isfinite(length))
+  {
+    return 0;
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    out[k] /= length;
+  }
+  return 1;
+}
+
+/* Moves the vertex of the new cells uphill from where it is. Returns the worst shape it comes to. */
+static double climb(mlim_solid* solid, mlim_solid_change* change, int32_t vertex, double enough)
+{
+  double* point = solid->points + 3 * (size_t)vertex;
+  double worst = worst_new(solid, change);
+  double step = FIRST_STEP * nearest_distance(solid, change, vertex);
+  for (int n = 0; n < MAX_CLIMBS && worst < enough && step > 0; ++n)
+  {
+    double direction[3];
+    if (!find_direction(
+          solid, change, vertex, worst, step * DERIVATIVE_STEP / FIRST_STEP, direction))
+    {
+      break;
+    }
+    double from[3];
+    mlim_copy(point, from);
+    double there = -INFINITY;
+    for (int h = 0; h < MAX_HALVINGS; ++h, step *= 0.5)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        point[k] = from[k] + step * direction[k];
+      }
+      there = worst_new(solid, change);
+      if (there > worst)
+      {
+        break;
+      }
+    }
+    if (!(there > worst))
+    {
+      mlim_copy(from, point);
+      break;
+    }
+    worst = there;
+  }
+  return worst_new(solid, change);
+}
+
+/* ---- moves ---- */
+
+/* The mean of the other vertices of the cells. */
+static void find_mean(
+  const mlim_solid* solid, const mlim_solid_change* change, int32_t vertex, double out[3])
+{
+  double sum[3] = { 0 };
+  for (size_t c = 0; c < change->new_count; ++c)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      const int32_t v = change->new_cells[c][k];
+      for (int x = 0; x < 3 && v != vertex; ++x)
+      {
+        sum[x] += solid->points[3 * (size_t)v + (size_t)x];
+      }
+    }
+  }
+  for (int x = 0; x < 3; ++x)
+  {
+    out[x] = sum[x] / (3.0 * (double)change->new_count);
+  }
+}
+
+int mlim_exchange_move(mlim_solid* solid, mlim_solid_change* change, int32_t cell, int index)
+{
+  const int32_t vertex = solid->cells[cell].vertices[index];
+  if ((size_t)vertex < solid->fixed_count || !mlim_solid_star(solid, cell, vertex, change))
+  {
+    return 0;
+  }
+  double worst = INFINITY;
+  change->new_count = 0;
+  for (size_t c = 0; c < change->old_count; ++c)
+  {
+    const mlim_solid_cell* old = &solid->cells[change->old_cells[c]];
+    memcpy(change->new_cells[change->new_count++], old->vertices, sizeof old->vertices);
+    worst = mlim_min(worst, old->shape);
+  }
+  double* point = solid->points + 3 * (size_t)vertex;
+  double from[3];
+  mlim_copy(point, from);
+  find_mean(solid, change, vertex, point);
+  if (!(worst_new(solid, change) > worst))
+  {
+    mlim_copy(from, point);
+  }
+  if (!(climb(solid, change, vertex, 2 + solid->bound.sine) > worst + LEAST_GAIN * fabs(worst)))
+  {
+    mlim_copy(from, point);
+    return 0;
+  }
+  for (size_t c = 0; c < change->new_count; ++c)
+  {
+    change->new_ids[c] = change->old_cells[c];
+    solid->cells[change->old_cells[c]].shape = change->new_shapes[c];
+  }
+  return 1;
+}
+
+/* ---- new vertices ---- */
+
+typedef struct cavity_face
+{
+  int32_t cell;
+  int index;
+  double shape; /* of the new cell at this face */
+} cavity_face;
+
+typedef struct cavity
+{
+  cavity_face faces[MAX_FACES];
+  size_t face_count;
+  int32_t cells[MAX_CAVITY];
+  size_t cell_count;
+  uint32_t stamp;
+} cavity;
+
+static void add_face(mlim_solid* solid, cavity* c, int32_t cell, int index, int32_t vertex)
+{
+  int32_t v[4];
+  memcpy(v, solid->cells[cell].vertices, sizeof v);
+  v[index] = vertex;
+  c->faces[c->face_count++] =
+    (cavity_face){ .cell = cell, .index = index, .shape = mlim_solid_shape(solid, v) };
+}
+
+/* Adds a cell: its faces that are faces of the cavity vanish, the others become some. */
+static void absorb(mlim_solid* solid, cavity* c, int32_t id, int32_t vertex)
+{
+  mlim_solid_cell* cell = &solid->cells[id];
+  cell->mark = c->stamp;
+  c->cells[c->cell_count++] = id;
+  size_t kept = 0;
+  for (size_t f = 0; f < c->face_count; ++f)
+  {
+    const cavity_face* face = &c->faces[f];
+    if (solid->cells[face->cell].neighbors[face->index] != id)
+    {
+      c->faces[kept++] = *face;
+    }
+  }
+  c->face_count = kept;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t other = cell->neighbors[k];
+    if (other == MLIM_SOLID_NOTHING || solid->cells[other].mark != c->stamp)
+    {
+      add_face(solid, c, id, k, vertex);
+    }
+  }
+}
+
+static size_t worst_face(const cavity* c)
+{
+  size_t worst = 0;
+  for (size_t f = 1; f < c->face_count; ++f)
+  {
+    worst = c->faces[f].shape < c->faces[worst].shape ? f : worst;
+  }
+  return worst;
+}
+
+/* Grows a cavity from a cell, each time by the cell beyond the worst face, up to `limit` cells.
+   Returns the number of cells at which the worst new cell is best; *best receives its shape. */
+static size_t grow(
+  mlim_solid* solid, cavity* c, int32_t cell, int32_t vertex, size_t limit, double* best)
+{
+  c->stamp = ++solid->stamp;
+  c->face_count = 0;
+  c->cell_count = 0;
+  *best = -INFINITY;
+  size_t at = 0;
+  absorb(solid, c, cell, vertex);
+  for (;;)
+  {
+    const cavity_face face = c->faces[worst_face(c)];
+    if (face.shape > *best)
+    {
+      *best = face.shape;
+      at = c->cell_count;
+    }
+    const mlim_solid_cell* inner = &solid->cells[face.cell];
+    if (c->cell_count == limit || !mlim_solid_is_open(solid, inner, face.index))
+    {
+      return at;
+    }
+    absorb(solid, c, inner->neighbors[face.index], vertex);
+  }
+}
+
+static void take_cavity(
+  const mlim_solid* solid, const cavity* c, int32_t vertex, mlim_solid_change* change)
+{
+  memcpy(change->old_cells, c->cells, c->cell_count * sizeof *c->cells);
+  change->old_count = c->cell_count;
+  change->new_count = 0;
+  for (size_t f = 0; f < c->face_count; ++f)
+  {
+    int32_t* v = change->new_cells[change->new_count++];
+    memcpy(v, solid->cells[c->faces[f].cell].vertices, sizeof change->new_cells[0]);
+    v[c->faces[f].index] = vertex;
+  }
+}
+
+/* The cavity for the vertex where it is, then a better place in it. */
+static double prepare(mlim_solid* solid, mlim_solid_change* change, int32_t cell, int32_t vertex)
+{
+  cavity c;
+  double best;
+  const size_t count = grow(solid, &c, cell, vertex, MAX_CAVITY, &best);
+  grow(solid, &c, cell, vertex, count, &best);
+  take_cavity(solid, &c, vertex, change);
+  return climb(solid, change, vertex, 2 + solid->bound.sine);
+}
+
+/* Where a new vertex is tried: in the middle of the cell, and of each of its edges. */
+static void place_new(const mlim_solid* solid, int32_t cell, int place, double out[3])
+{
+  static const int pairs[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
+  const int32_t* v = solid->cells[cell].vertices;
+  for (int x = 0; x < 3; ++x)
+  {
+    double p[4];
+    for (int k = 0; k < 4; ++k)
+    {
+      p[k] = solid->points[3 * (size_t)v[k] + (size_t)x];
+    }
+    out[x] = place == 0 ? 0.25 * (p[0] + p[1] + p[2] + p[3])
+                        : 0.5 * (p[pairs[place - 1][0]] + p[pairs[place - 1][1]]);
+  }
+}
+
+int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t cell)
+{
+  enum
+  {
+    PLACES = 7
+  };
+  if (solid->vertex_count >= INT32_MAX - 1 || mlim_reserve(&solid->points, &solid->vertex_capacity,
+                                                solid->vertex_count + 1, 3 * sizeof *solid->points))
+  {
+    return -1;
+  }
+  const int32_t vertex = (int32_t)solid->vertex_count;
+  const double old = solid->cells[cell].shape;
+  for (int place = 0; place < PLACES; ++place)
+  {
+    place_new(solid, cell, place, solid->points + 3 * (size_t)vertex);
+    const double shape = prepare(solid, change, cell, vertex);
+    if (shape > 0 && shape > old + LEAST_GAIN * fabs(old))
+    {
+      const int done = mlim_solid_exchange(solid, change, solid->cells[cell].label);
+      solid->vertex_count += done > 0;
+      return done;
+    }
+  }
+  return 0;
+}

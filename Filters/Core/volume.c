@@ -1,0 +1,256 @@
+#include "volume.h"
+
+#include "cells.h"
+#include "memory.h"
+#include "slivers.h"
+#include "status.h"
+#include "vector.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Shares of the stage. */
+static const double REFINED = 0.5;
+static const double MENDED = 0.95;
+
+/* Cells are bettered until their dihedral angles are from 15 to 165 degrees: more than the 10 that
+   are reached nearly everywhere, since some neighbours then suffer a little. */
+static const double SLIVER_SINE = 0.25881904510252074;
+
+typedef struct maker
+{
+  const mlim_volume_input* input;
+  mlim_context* context;
+  mlim_solid solid;
+  int32_t* vertices; /* of the solid, for each of the complex; -1 */
+  int32_t* ids;      /* of the solid's cell, for each of the complex's; -1 */
+  mlim_volume* out;
+} maker;
+
+/* The surface's vertices come first, in the order of the mesh. */
+static void take_vertices(maker* m)
+{
+  const mlim_complex* complex = m->input->complex;
+  const mlim_mesh* mesh = m->input->mesh;
+  mlim_solid* solid = &m->solid;
+  memcpy(solid->points, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
+  solid->fixed_count = mesh->vertex_count;
+  solid->vertex_count = mesh->vertex_count;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    for (int k = 0; k < 4 && m->ids[c] >= 0; ++k)
+    {
+      const int32_t v = complex->cells[c].vertices[k];
+      if (m->vertices[v] < 0)
+      {
+        mlim_copy(complex->vertices[v].point, solid->points + 3 * solid->vertex_count);
+        m->vertices[v] = (int32_t)solid->vertex_count++;
+      }
+    }
+  }
+}
+
+static void take_cells(maker* m)
+{
+  const mlim_complex* complex = m->input->complex;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    if (m->ids[c] < 0)
+    {
+      continue;
+    }
+    const mlim_cell* from = &complex->cells[c];
+    mlim_solid_cell* cell = &m->solid.cells[m->ids[c]];
+    *cell = (mlim_solid_cell){ .label = from->label };
+    for (int k = 0; k < 4; ++k)
+    {
+      const int32_t other = from->neighbors[k];
+      cell->vertices[k] = m->vertices[from->vertices[k]];
+      cell->neighbors[k] = other == MLIM_NO_CELL ? MLIM_SOLID_NOTHING : m->ids[other];
+    }
+    cell->shape = mlim_solid_shape(&m->solid, cell->vertices);
+  }
+}
+
+static mlim_status take_solid(maker* m)
+{
+  const mlim_complex* complex = m->input->complex;
+  m->ids = mlim_allocate(complex->cell_count, sizeof *m->ids);
+  m->vertices = mlim_allocate(complex->vertex_count, sizeof *m->vertices);
+  if (m->ids == NULL || m->vertices == NULL)
+  {
+    return mlim_fail_memory(m->context, "the volume's cells");
+  }
+  size_t count = 0;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    const int is_inside = mlim_cells_is_inside(complex, m->input->options, &complex->cells[c]);
+    m->ids[c] = is_inside ? (int32_t)count++ : -1;
+  }
+  for (size_t v = 0; v < complex->vertex_count; ++v)
+  {
+    m->vertices[v] = v < m->input->mesh_vertices_count ? m->input->mesh_vertices[v] : -1;
+  }
+  const mlim_status status = mlim_solid_create(complex->vertex_count, count, m->context, &m->solid);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  m->solid.bound = (mlim_shape_bound){ .sine = SLIVER_SINE,
+    .radius_edge_ratio = m->input->options->cell_radius_edge_ratio };
+  m->solid.cell_count = count;
+  take_vertices(m);
+  take_cells(m);
+  return MLIM_OK;
+}
+
+/* ---- the product ---- */
+
+static mlim_status allocate_volume(maker* m)
+{
+  const mlim_solid* solid = &m->solid;
+  mlim_volume* out = m->out;
+  out->vertices = mlim_allocate(3 * solid->vertex_count, sizeof *out->vertices);
+  out->cells = mlim_allocate(4 * solid->cell_count, sizeof *out->cells);
+  out->cell_labels = mlim_allocate(solid->cell_count, sizeof *out->cell_labels);
+  out->label_count = m->input->mesh->label_count;
+  out->label_volumes = mlim_allocate_zeroed(out->label_count, sizeof *out->label_volumes);
+  return out->vertices != NULL && out->cells != NULL && out->cell_labels != NULL &&
+             out->label_volumes != NULL
+           ? MLIM_OK
+           : mlim_fail_memory(m->context, "the volume");
+}
+
+static int is_ball(const mlim_mesh* mesh, int32_t vertex)
+{
+  return (size_t)vertex < mesh->vertex_count &&
+         mesh->node_types[vertex] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
+}
+
+static void measure_cell(maker* m, const mlim_solid_cell* cell)
+{
+  mlim_volume_report* report = &m->out->report;
+  const double* points[4];
+  int has_ball = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    points[k] = m->solid.points + 3 * (size_t)cell->vertices[k];
+    has_ball |= is_ball(m->input->mesh, cell->vertices[k]);
+  }
+  const mlim_shape_figures f = mlim_shape_measure(points);
+  report->min_dihedral_angle = mlim_min(report->min_dihedral_angle, f.min_angle);
+  report->max_dihedral_angle = mlim_max(report->max_dihedral_angle, f.max_angle);
+  m->out->label_volumes[cell->label] += f.volume;
+  report->min_cell_volume = mlim_min(report->min_cell_volume, f.volume);
+  if (!has_ball)
+  {
+    report->max_radius_edge_ratio = mlim_max(report->max_radius_edge_ratio, f.radius_edge_ratio);
+    report->unresolved_ratio_count +=
+      f.radius_edge_ratio > m->input->options->cell_radius_edge_ratio;
+  }
+}
+
+static mlim_status read_volume(maker* m)
+{
+  mlim_solid* solid = &m->solid;
+  mlim_volume* out = m->out;
+  const mlim_status status = allocate_volume(m);
+  int32_t* renumbered = mlim_allocate(solid->vertex_count, sizeof *renumbered);
+  if (status != MLIM_OK || renumbered == NULL)
+  {
+    mlim_release(renumbered);
+    return status == MLIM_OK ? mlim_fail_memory(m->context, "the volume") : status;
+  }
+  out->surface_vertex_count = solid->fixed_count;
+  out->vertex_count = solid->fixed_count;
+  memcpy(out->vertices, solid->points, 3 * solid->fixed_count * sizeof *out->vertices);
+  for (size_t v = 0; v < solid->vertex_count; ++v)
+  {
+    renumbered[v] = v < solid->fixed_count ? (int32_t)v : -1;
+  }
+  out->report.min_dihedral_angle = 180;
+  out->report.min_cell_volume = INFINITY;
+  for (size_t c = 0; c < solid->cell_count; ++c)
+  {
+    const mlim_solid_cell* cell = &solid->cells[c];
+    if (cell->vertices[0] < 0)
+    {
+      continue;
+    }
+    for (int k = 0; k < 4; ++k)
+    {
+      const int32_t v = cell->vertices[k];
+      if (renumbered[v] < 0)
+      {
+        mlim_copy(solid->points + 3 * (size_t)v, out->vertices + 3 * out->vertex_count);
+        renumbered[v] = (int32_t)out->vertex_count++;
+      }
+      out->cells[4 * out->cell_count + (size_t)k] = renumbered[v];
+    }
+    out->cell_labels[out->cell_count++] = cell->label;
+    measure_cell(m, cell);
+  }
+  out->report.min_cell_volume = out->cell_count > 0 ? out->report.min_cell_volume : 0;
+  mlim_release(renumbered);
+  return MLIM_OK;
+}
+
+static mlim_status make(maker* m)
+{
+  mlim_volume_report* report = &m->out->report;
+  const mlim_options* options = m->input->options;
+  mlim_cells_result refined;
+  const mlim_status outcome =
+    mlim_cells_refine(m->input->complex, options, REFINED, m->context, &refined);
+  mlim_status status = outcome == MLIM_VERTEX_LIMIT ? MLIM_OK : outcome;
+  if (status == MLIM_OK)
+  {
+    report->insertion_count = refined.insertion_count;
+    report->unresolved_size_count = refined.unresolved_size_count;
+    status = take_solid(m);
+  }
+  if (status == MLIM_OK && options->remove_slivers)
+  {
+    mlim_slivers_result mended;
+    status =
+      mlim_slivers_remove(&m->solid, options->vertex_limit, REFINED, MENDED, m->context, &mended);
+    report->sliver_count = mended.sliver_count;
+    report->added_vertex_count = mended.added_count;
+    report->exchange_count = mended.exchange_count;
+    report->unresolved_sliver_count = mended.left_count;
+  }
+  if (status == MLIM_OK)
+  {
+    status = read_volume(m);
+  }
+  if (status == MLIM_OK)
+  {
+    status = mlim_progress(m->context, MLIM_STAGE_VOLUME, 1);
+  }
+  return status == MLIM_OK ? outcome : status;
+}
+
+mlim_status mlim_volume_make(
+  const mlim_volume_input* input, mlim_context* context, mlim_volume* out)
+{
+  *out = (mlim_volume){ 0 };
+  maker m = { .input = input, .context = context, .out = out };
+  const mlim_status status = make(&m);
+  mlim_solid_free(&m.solid);
+  mlim_release(m.vertices);
+  mlim_release(m.ids);
+  if (status != MLIM_OK && status != MLIM_VERTEX_LIMIT)
+  {
+    mlim_volume_free(out);
+  }
+  return status;
+}
+
+void mlim_volume_free(mlim_volume* volume)
+{
+  mlim_release(volume->vertices);
+  mlim_release(volume->cells);
+  mlim_release(volume->cell_labels);
+  mlim_release(volume->label_volumes);
+  *volume = (mlim_volume){ 0 };
+}
