@@ -67,7 +67,7 @@
  * - Field data: `LabelIds`, `LabelNames`, `LabelVolumes` and the options, among them `CellSize`,
  *   `CellRadiusEdgeRatio`, `LabelCellSizes` (id and size), `RemoveSlivers`, `KeepBackground`;
  *   `VertexCount`, `SurfaceVertexCount`, `CellCount`, `InsertionCount`, `AddedVertexCount`;
- *   `SliverCount` tetrahedra below 15 or above 165 degrees after refinement, of which
+ *   `SliverCount` tetrahedra below 10 or above 170 degrees after refinement, of which
  *   `UnresolvedSliverCount` are left after `ExchangeCount` steps; `UnresolvedSizeCount`,
  *   `UnresolvedRatioCount` (without a ball's vertex); `MinDihedralAngle`, `MaxDihedralAngle` in
  *   degrees, `MaxRadiusEdgeRatio` (without a ball's vertex), `MinCellVolume`.

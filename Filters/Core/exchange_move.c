@@ -24,6 +24,8 @@ static const double DERIVATIVE_STEP = 1e-4;
    difference of shapes. Less blurs the worst, more stalls where two cells are equally bad. */
 static const double SHARPNESS = 12;
 static const double LEAST_GAIN = 1e-3;
+/* A climb ends where the worst angle's sine is this times its bound. */
+static const double GOOD_ENOUGH = 1.1;
 
 static double worst_new(const mlim_solid* solid, mlim_solid_change* change)
 {
@@ -180,7 +182,8 @@ int mlim_exchange_move(mlim_solid* solid, mlim_solid_change* change, int32_t cel
   {
     mlim_copy(from, point);
   }
-  if (!(climb(solid, change, vertex, 2 + solid->bound.sine) > worst + LEAST_GAIN * fabs(worst)))
+  if (!(climb(solid, change, vertex, 1 + GOOD_ENOUGH * solid->bound.sine) >
+        worst + LEAST_GAIN * fabs(worst)))
   {
     mlim_copy(from, point);
     return 0;
@@ -306,11 +309,17 @@ static double prepare(mlim_solid* solid, mlim_solid_change* change, int32_t cell
   const size_t count = grow(solid, &c, cell, vertex, MAX_CAVITY, &best);
   grow(solid, &c, cell, vertex, count, &best);
   take_cavity(solid, &c, vertex, change);
-  return climb(solid, change, vertex, 2 + solid->bound.sine);
+  return climb(solid, change, vertex, 1 + GOOD_ENOUGH * solid->bound.sine);
 }
 
-/* Where a new vertex is tried: in the middle of the cell, and of each of its edges. */
-static void place_new(const mlim_solid* solid, int32_t cell, int place, double out[3])
+/* Where a new vertex is tried: in the middle of the cell, of each of its faces, and
+   of each of its edges. */
+enum
+{
+  PLACES_IN_CELL = 11
+};
+
+static void place_in_cell(const mlim_solid* solid, int32_t cell, int place, double out[3])
 {
   static const int pairs[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
   const int32_t* v = solid->cells[cell].vertices;
@@ -321,17 +330,69 @@ static void place_new(const mlim_solid* solid, int32_t cell, int place, double o
     {
       p[k] = solid->points[3 * (size_t)v[k] + (size_t)x];
     }
-    out[x] = place == 0 ? 0.25 * (p[0] + p[1] + p[2] + p[3])
-                        : 0.5 * (p[pairs[place - 1][0]] + p[pairs[place - 1][1]]);
+    const double sum = p[0] + p[1] + p[2] + p[3];
+    out[x] = place == 0  ? 0.25 * sum
+             : place < 5 ? (sum - p[place - 1]) / 3
+                         : 0.5 * (p[pairs[place - 5][0]] + p[pairs[place - 5][1]]);
   }
+}
+
+/* Before that, mostly for the radius-edge ratio: from the middle of the shortest edge towards the
+   circumcentre, so far that a cell of good shape fits between. Ungor's off-centres. */
+static void place_off_center(const mlim_solid* solid, int32_t cell, double part, double out[3])
+{
+  const int32_t* v = solid->cells[cell].vertices;
+  const double* p[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    p[k] = solid->points + 3 * (size_t)v[k];
+  }
+  double shortest = INFINITY;
+  double middle[3] = { 0 };
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = 0; j < i; ++j)
+    {
+      const double squared = mlim_distance_squared(p[i], p[j]);
+      if (squared < shortest)
+      {
+        shortest = squared;
+        mlim_interpolate(p[i], p[j], 0.5, middle);
+      }
+    }
+  }
+  double center[3];
+  mlim_shape_center(p, center);
+  const double distance = mlim_distance(middle, center);
+  mlim_interpolate(middle, center, mlim_min(1, part * sqrt(shortest) / distance), out);
+}
+
+/* In shortest edges; 0.87 would make an equilateral triangle with the edge. */
+static const double OFF_CENTER_PARTS[] = { 1, 1.6, 0.7 };
+
+enum
+{
+  PLACES_OFF_CENTER = sizeof OFF_CENTER_PARTS / sizeof *OFF_CENTER_PARTS
+};
+
+/* The cavity and the new vertex for one of the places. Returns the worst shape. */
+static double try_place(
+  mlim_solid* solid, mlim_solid_change* change, int32_t cell, int place, int32_t vertex)
+{
+  double* point = solid->points + 3 * (size_t)vertex;
+  if (place < PLACES_OFF_CENTER)
+  {
+    place_off_center(solid, cell, OFF_CENTER_PARTS[place], point);
+  }
+  else
+  {
+    place_in_cell(solid, cell, place - PLACES_OFF_CENTER, point);
+  }
+  return prepare(solid, change, cell, vertex);
 }
 
 int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t cell)
 {
-  enum
-  {
-    PLACES = 7
-  };
   if (solid->vertex_count >= INT32_MAX - 1 || mlim_reserve(&solid->points, &solid->vertex_capacity,
                                                 solid->vertex_count + 1, 3 * sizeof *solid->points))
   {
@@ -339,16 +400,23 @@ int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t c
   }
   const int32_t vertex = (int32_t)solid->vertex_count;
   const double old = solid->cells[cell].shape;
-  for (int place = 0; place < PLACES; ++place)
+  double most = old + LEAST_GAIN * fabs(old);
+  int best = -1;
+  for (int place = 0; place < PLACES_OFF_CENTER + PLACES_IN_CELL && most < 1; ++place)
   {
-    place_new(solid, cell, place, solid->points + 3 * (size_t)vertex);
-    const double shape = prepare(solid, change, cell, vertex);
-    if (shape > 0 && shape > old + LEAST_GAIN * fabs(old))
+    const double shape = try_place(solid, change, cell, place, vertex);
+    if (shape > 0 && shape > most)
     {
-      const int done = mlim_solid_exchange(solid, change, solid->cells[cell].label);
-      solid->vertex_count += done > 0;
-      return done;
+      most = shape;
+      best = place;
     }
   }
-  return 0;
+  if (best < 0)
+  {
+    return 0;
+  }
+  (void)try_place(solid, change, cell, best, vertex);
+  const int done = mlim_solid_exchange(solid, change, solid->cells[cell].label);
+  solid->vertex_count += done > 0;
+  return done;
 }

@@ -332,8 +332,8 @@ typedef struct mlim_volume_report
   size_t insertion_count;         /* vertices that refinement added inside the regions */
   size_t unresolved_size_count;   /* cells that stayed above their size: no place for a point */
   size_t unresolved_ratio_count;  /* cells above the radius-edge ratio, without a ball vertex */
-  size_t sliver_count;            /* after refinement: cells with a dihedral angle below 15 degrees
-                                     or above 165 */
+  size_t sliver_count;            /* after refinement: cells with a dihedral angle below 10 degrees
+                                     or above 170 */
   size_t unresolved_sliver_count; /* of them left at the end */
   size_t exchange_count;          /* steps that bettered a cell */
   size_t added_vertex_count;      /* vertices that they added */

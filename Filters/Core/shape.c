@@ -77,13 +77,10 @@ double mlim_shape_of(const mlim_shape_bound* bound, const double* const points[4
   {
     return isfinite(sine) ? sine : -1;
   }
-  if (sine < bound->sine)
-  {
-    return sine / bound->sine;
-  }
   const double allowed = bound->radius_edge_ratio * bound->radius_edge_ratio;
-  const double excess = cell.radius_squared / (allowed * shortest_squared(&cell));
-  return excess > 1 ? 1 + 1 / excess : 2 + sine;
+  const double part = allowed * shortest_squared(&cell) / cell.radius_squared;
+  const double shape = mlim_min(sine / bound->sine, sqrt(sqrt(part)));
+  return shape < 1 ? shape : 1 + sine;
 }
 
 static double angle_between(const pieces* cell, int i, int j)
@@ -96,10 +93,18 @@ static double angle_between(const pieces* cell, int i, int j)
   return degrees * atan2(sqrt(mlim_dot(cross, cross)), -mlim_dot(a, b));
 }
 
-double mlim_shape_angle(const double* const points[4], int i, int j)
+void mlim_shape_center(const double* const points[4], double out[3])
 {
   const pieces cell = take_apart(points);
-  return angle_between(&cell, i, j);
+  for (int k = 0; k < 3; ++k)
+  {
+    double sum = 0;
+    for (int e = 0; e < 3; ++e)
+    {
+      sum += cell.edges_squared[e] * cell.normals[e + 1][k];
+    }
+    out[k] = points[0][k] + sum / (2 * cell.volume);
+  }
 }
 
 mlim_shape_figures mlim_shape_measure(const double* const points[4])

@@ -9,9 +9,10 @@ typedef struct mlim_shape_bound
   double radius_edge_ratio; /* > 0 */
 } mlim_shape_bound;
 
-/* One figure for the shape of the cell of four points, larger is better. Below 1: its dihedral
-   angles miss the bound; not above 0 if it is inverted or flat. From 1 to 2: only its radius-edge
-   ratio does. Above 2, where it is good: 2 + the smallest sine of its dihedral angles. */
+/* One figure for the shape of the cell of four points, larger is better. Below 1 it misses a bound:
+   the smaller of the sine's part of its bound and the square root of the ratio's, so that angles
+   weigh more; not above 0 if the cell is inverted or flat. Above 1, where it meets both: 1 + the
+   smallest sine of its dihedral angles. */
 double mlim_shape_of(const mlim_shape_bound* bound, const double* const points[4]);
 
 typedef struct mlim_shape_figures
@@ -23,7 +24,7 @@ typedef struct mlim_shape_figures
 
 mlim_shape_figures mlim_shape_measure(const double* const points[4]);
 
-/* Dihedral angle at the edge of the two points that are not i and j, degrees. */
-double mlim_shape_angle(const double* const points[4], int i, int j);
+/* Circumcentre. */
+void mlim_shape_center(const double* const points[4], double out[3]);
 
 #endif

@@ -7,7 +7,7 @@
 
 typedef struct mlim_slivers_result
 {
-  size_t sliver_count;   /* at first: cells below the bound of the dihedral angles */
+  size_t sliver_count;   /* at first: cells with a dihedral angle below 10 or above 170 degrees */
   size_t exchange_count; /* steps that bettered one */
   size_t added_count;    /* vertices added */
   size_t left_count;     /* slivers that are left */

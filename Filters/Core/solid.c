@@ -2,6 +2,7 @@
 
 #include "memory.h"
 #include "status.h"
+#include "vector.h"
 
 mlim_status mlim_solid_create(size_t vertices, size_t cells, mlim_context* context, mlim_solid* out)
 {
@@ -33,11 +34,16 @@ void mlim_solid_free(mlim_solid* solid)
 double mlim_solid_shape(const mlim_solid* solid, const int32_t vertices[4])
 {
   const double* points[4];
+  double part = 1;
   for (int k = 0; k < 4; ++k)
   {
-    points[k] = solid->points + 3 * (size_t)vertices[k];
+    const size_t v = (size_t)vertices[k];
+    points[k] = solid->points + 3 * v;
+    part = v < solid->fixed_count ? mlim_max(part, solid->ratio_parts[v]) : part;
   }
-  return mlim_shape_of(&solid->bound, points);
+  const mlim_shape_bound bound = { .sine = solid->bound.sine,
+    .radius_edge_ratio = part * solid->bound.radius_edge_ratio };
+  return mlim_shape_of(&bound, points);
 }
 
 int mlim_solid_is_open(const mlim_solid* solid, const mlim_solid_cell* cell, int index)

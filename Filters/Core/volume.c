@@ -4,6 +4,7 @@
 #include "memory.h"
 #include "slivers.h"
 #include "status.h"
+#include "triangle.h"
 #include "vector.h"
 
 #include <math.h>
@@ -15,15 +16,22 @@ static const double MENDED = 0.95;
 
 /* Cells are bettered until their dihedral angles are from 15 to 165 degrees: more than the 10 that
    are reached nearly everywhere, since some neighbours then suffer a little. */
-static const double SLIVER_SINE = 0.25881904510252074;
+static const double GOOD_SINE = 0.25881904510252074;
+
+/* Aimed at, of the bound on the radius-edge ratio, so that cells that just miss it are within. */
+static const double RATIO_PART = 0.97;
+
+/* Cells at a bad triangle may have this times its ratio. */
+static const double BAD_TRIANGLE_PART = 1.5;
 
 typedef struct maker
 {
   const mlim_volume_input* input;
   mlim_context* context;
   mlim_solid solid;
-  int32_t* vertices; /* of the solid, for each of the complex; -1 */
-  int32_t* ids;      /* of the solid's cell, for each of the complex's; -1 */
+  int32_t* vertices;   /* of the solid, for each of the complex; -1 */
+  int32_t* ids;        /* of the solid's cell, for each of the complex's; -1 */
+  double* ratio_parts; /* per vertex of the mesh, see mlim_solid */
   mlim_volume* out;
 } maker;
 
@@ -72,12 +80,40 @@ static void take_cells(maker* m)
   }
 }
 
+static int is_ball(const mlim_mesh* mesh, size_t vertex)
+{
+  return mesh->node_types[vertex] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
+}
+
+/* Cells near balls may have any ratio, and those at triangles that are above it themselves a larger
+   one: nothing could bring them below it. */
+static void find_ratio_parts(maker* m)
+{
+  const mlim_mesh* mesh = m->input->mesh;
+  const double bound = m->solid.bound.radius_edge_ratio;
+  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  {
+    m->ratio_parts[v] = is_ball(mesh, v) ? INFINITY : 1;
+  }
+  for (size_t t = 0; t < mesh->triangle_count; ++t)
+  {
+    const int32_t* v = mesh->triangles + 3 * t;
+    const double ratio = sqrt(mlim_radius_edge_ratio_squared(mesh->vertices + 3 * (size_t)v[0],
+      mesh->vertices + 3 * (size_t)v[1], mesh->vertices + 3 * (size_t)v[2]));
+    for (int k = 0; k < 3 && ratio > bound; ++k)
+    {
+      m->ratio_parts[v[k]] = mlim_max(m->ratio_parts[v[k]], BAD_TRIANGLE_PART * ratio / bound);
+    }
+  }
+}
+
 static mlim_status take_solid(maker* m)
 {
   const mlim_complex* complex = m->input->complex;
   m->ids = mlim_allocate(complex->cell_count, sizeof *m->ids);
   m->vertices = mlim_allocate(complex->vertex_count, sizeof *m->vertices);
-  if (m->ids == NULL || m->vertices == NULL)
+  m->ratio_parts = mlim_allocate(m->input->mesh->vertex_count, sizeof *m->ratio_parts);
+  if (m->ids == NULL || m->vertices == NULL || m->ratio_parts == NULL)
   {
     return mlim_fail_memory(m->context, "the volume's cells");
   }
@@ -96,9 +132,11 @@ static mlim_status take_solid(maker* m)
   {
     return status;
   }
-  m->solid.bound = (mlim_shape_bound){ .sine = SLIVER_SINE,
-    .radius_edge_ratio = m->input->options->cell_radius_edge_ratio };
+  m->solid.bound = (mlim_shape_bound){ .sine = GOOD_SINE,
+    .radius_edge_ratio = RATIO_PART * m->input->options->cell_radius_edge_ratio };
   m->solid.cell_count = count;
+  m->solid.ratio_parts = m->ratio_parts;
+  find_ratio_parts(m);
   take_vertices(m);
   take_cells(m);
   return MLIM_OK;
@@ -121,12 +159,6 @@ static mlim_status allocate_volume(maker* m)
            : mlim_fail_memory(m->context, "the volume");
 }
 
-static int is_ball(const mlim_mesh* mesh, int32_t vertex)
-{
-  return (size_t)vertex < mesh->vertex_count &&
-         mesh->node_types[vertex] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
-}
-
 static void measure_cell(maker* m, const mlim_solid_cell* cell)
 {
   mlim_volume_report* report = &m->out->report;
@@ -135,7 +167,8 @@ static void measure_cell(maker* m, const mlim_solid_cell* cell)
   for (int k = 0; k < 4; ++k)
   {
     points[k] = m->solid.points + 3 * (size_t)cell->vertices[k];
-    has_ball |= is_ball(m->input->mesh, cell->vertices[k]);
+    const size_t v = (size_t)cell->vertices[k];
+    has_ball |= v < m->solid.fixed_count && is_ball(m->input->mesh, v);
   }
   const mlim_shape_figures f = mlim_shape_measure(points);
   report->min_dihedral_angle = mlim_min(report->min_dihedral_angle, f.min_angle);
@@ -239,6 +272,7 @@ mlim_status mlim_volume_make(
   mlim_solid_free(&m.solid);
   mlim_release(m.vertices);
   mlim_release(m.ids);
+  mlim_release(m.ratio_parts);
   if (status != MLIM_OK && status != MLIM_VERTEX_LIMIT)
   {
     mlim_volume_free(out);

@@ -118,7 +118,7 @@ def sharp_cells(volume, surface, angles):
         sharp[surface.triangles[angle < SHARP_TRIANGLE].ravel()] = True
     # Wedges: the cells of one label at one edge of the surface.
     count = np.int64(len(volume.points))
-    surface_edges = np.unique(edge_key(half_edges(surface.triangles), count))
+    surface_edges = np.unique(edge_key(half_edges(surface.triangles)[0], count))
     cell_edges = np.sort(volume.cells[:, EDGES], axis=2).reshape(-1, 2)
     keys = edge_key(cell_edges, count)
     on_surface = np.isin(keys, surface_edges)
@@ -171,6 +171,8 @@ def audit_volume(image, surface_data, grid):
         max_volume_error=max(errors, default=0.0),
         agreement=float(sizes[agrees & regions].sum() / sizes[regions].sum()),
         max_ratio=float(ratios[~near_ball].max(initial=0.0)),
+        max_ratio_away=float(ratios[~near_ball & ~near_sharp].max(initial=0.0)),
+        ratio_exceptions_away=int((ratios[~near_ball & ~near_sharp] > 2).sum()),
         ratio_exceptions=int((ratios[~near_ball] > 2).sum()),
         min_angle=float(angles.min()),
         max_angle=float(angles.max()),
