@@ -179,7 +179,7 @@ typedef struct mlim_options
   size_t min_component_voxels; /* smaller components need not be in the mesh; >= 1 */
   /* Of the volume alone. */
   double cell_size;                   /* bound on the circumradius of a cell; > 0 */
-  double cell_radius_edge_ratio;      /* bound on circumradius / shortest edge; >= 1 */
+  double cell_radius_edge_ratio;      /* bound on circumradius / shortest edge; >= 1; 0: 2 */
   const mlim_label_size* label_sizes; /* borrowed; in place of cell_size; NULL: none */
   size_t label_size_count;
   int remove_slivers;  /* 0: the cells stay Delaunay */

@@ -10,6 +10,7 @@ static const double FACET_DISTANCE_PART = 0.125; /* of facet_size: flat to about
 static const double CROSSING_TOLERANCE = 1e-6;
 static const double JUNCTION_MERGE_TOLERANCE = 0.25;
 static const double CELL_SIZE = 2; /* of facet_size */
+static const double CELL_RADIUS_EDGE_RATIO = 2;
 static const double SMALLEST_PART =
   0.125; /* of facet_size: a finer spot costs a fan of triangles */
 static const double LARGEST_SMALLEST = 0.5; /* what the voxels separate is not given up */
@@ -23,7 +24,6 @@ mlim_options mlim_options_default(const mlim_field* field)
     .oracle_mode = MLIM_ORACLE_EXACT,
     .vertex_limit = 20000000,
     .min_component_voxels = 30,
-    .cell_radius_edge_ratio = 2,
     .remove_slivers = 1 };
   (void)mlim_options_complete(field, NULL, &options);
   return options;
@@ -143,6 +143,8 @@ mlim_status mlim_options_complete(
   }
   options->smallest_distance = or_default(options->smallest_distance,
     mlim_min(SMALLEST_PART * options->facet_size, LARGEST_SMALLEST * unit));
+  options->cell_radius_edge_ratio =
+    or_default(options->cell_radius_edge_ratio, CELL_RADIUS_EDGE_RATIO);
   options->cell_size = or_default(options->cell_size, CELL_SIZE * options->facet_size);
   return check_options(context, options);
 }
