@@ -24,13 +24,16 @@ static const double DERIVATIVE_STEP = 1e-4;
    difference of shapes. Less blurs the worst, more stalls where two cells are equally bad. */
 static const double SHARPNESS = 12;
 static const double LEAST_GAIN = 1e-3;
+/* A place whose cells are worse than this part of what they have to be is not climbed from. */
+static const double PROMISING_PART = 0.3;
 /* A climb ends where the worst angle's sine is this times its bound. */
 static const double GOOD_ENOUGH = 1.1;
 
-static double worst_new(const mlim_solid* solid, mlim_solid_change* change)
+/* Stops at the first cell that is not above `above`: its shape is as good an answer then. */
+static double worst_new(const mlim_solid* solid, mlim_solid_change* change, double above)
 {
   double worst = INFINITY;
-  for (size_t c = 0; c < change->new_count; ++c)
+  for (size_t c = 0; c < change->new_count && worst > above; ++c)
   {
     change->new_shapes[c] = mlim_solid_shape(solid, change->new_cells[c]);
     worst = mlim_min(worst, change->new_shapes[c]);
@@ -100,7 +103,7 @@ static int find_direction(const mlim_solid* solid, const mlim_solid_change* chan
 static double climb(mlim_solid* solid, mlim_solid_change* change, int32_t vertex, double enough)
 {
   double* point = solid->points + 3 * (size_t)vertex;
-  double worst = worst_new(solid, change);
+  double worst = worst_new(solid, change, -INFINITY);
   double step = FIRST_STEP * nearest_distance(solid, change, vertex);
   for (int n = 0; n < MAX_CLIMBS && worst < enough && step > 0; ++n)
   {
@@ -119,7 +122,7 @@ static double climb(mlim_solid* solid, mlim_solid_change* change, int32_t vertex
       {
         point[k] = from[k] + step * direction[k];
       }
-      there = worst_new(solid, change);
+      there = worst_new(solid, change, worst);
       if (there > worst)
       {
         break;
@@ -132,7 +135,7 @@ static double climb(mlim_solid* solid, mlim_solid_change* change, int32_t vertex
     }
     worst = there;
   }
-  return worst_new(solid, change);
+  return worst_new(solid, change, -INFINITY);
 }
 
 /* ---- moves ---- */
@@ -178,7 +181,7 @@ int mlim_exchange_move(mlim_solid* solid, mlim_solid_change* change, int32_t cel
   double from[3];
   mlim_copy(point, from);
   find_mean(solid, change, vertex, point);
-  if (!(worst_new(solid, change) > worst))
+  if (!(worst_new(solid, change, worst) > worst))
   {
     mlim_copy(from, point);
   }
@@ -301,12 +304,17 @@ static void take_cavity(
   }
 }
 
-/* The cavity for the vertex where it is, then a better place in it. */
-static double prepare(mlim_solid* solid, mlim_solid_change* change, int32_t cell, int32_t vertex)
+/* The cavity for the vertex where it is, then a better place in it. Returns the worst shape. */
+static double prepare(
+  mlim_solid* solid, mlim_solid_change* change, int32_t cell, int32_t vertex, double above)
 {
   cavity c;
   double best;
   const size_t count = grow(solid, &c, cell, vertex, MAX_CAVITY, &best);
+  if (best < PROMISING_PART * above)
+  {
+    return best;
+  }
   grow(solid, &c, cell, vertex, count, &best);
   take_cavity(solid, &c, vertex, change);
   return climb(solid, change, vertex, 1 + GOOD_ENOUGH * solid->bound.sine);
@@ -375,10 +383,12 @@ enum
   PLACES_OFF_CENTER = sizeof OFF_CENTER_PARTS / sizeof *OFF_CENTER_PARTS
 };
 
-/* The cavity and the new vertex for one of the places. Returns the worst shape. */
+/* The cavity and the new vertex for one of the places. Returns the worst shape, which has to come
+   above `above`. */
 static double try_place(
-  mlim_solid* solid, mlim_solid_change* change, int32_t cell, int place, int32_t vertex)
+  mlim_solid* solid, mlim_solid_change* change, int32_t cell, int place, double above)
 {
+  const int32_t vertex = (int32_t)solid->vertex_count;
   double* point = solid->points + 3 * (size_t)vertex;
   if (place < PLACES_OFF_CENTER)
   {
@@ -388,7 +398,7 @@ static double try_place(
   {
     place_in_cell(solid, cell, place - PLACES_OFF_CENTER, point);
   }
-  return prepare(solid, change, cell, vertex);
+  return prepare(solid, change, cell, vertex, above);
 }
 
 int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t cell)
@@ -398,13 +408,12 @@ int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t c
   {
     return -1;
   }
-  const int32_t vertex = (int32_t)solid->vertex_count;
   const double old = solid->cells[cell].shape;
   double most = old + LEAST_GAIN * fabs(old);
   int best = -1;
   for (int place = 0; place < PLACES_OFF_CENTER + PLACES_IN_CELL && most < 1; ++place)
   {
-    const double shape = try_place(solid, change, cell, place, vertex);
+    const double shape = try_place(solid, change, cell, place, most);
     if (shape > 0 && shape > most)
     {
       most = shape;
@@ -415,7 +424,7 @@ int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t c
   {
     return 0;
   }
-  (void)try_place(solid, change, cell, best, vertex);
+  (void)try_place(solid, change, cell, best, old);
   const int done = mlim_solid_exchange(solid, change, solid->cells[cell].label);
   solid->vertex_count += done > 0;
   return done;

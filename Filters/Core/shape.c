@@ -16,6 +16,9 @@ typedef struct pieces
 /* Vertices of the six edges; the faces that meet at edge e are opposite to those of edge 5 - e. */
 static const int PAIRS[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
 
+/* Below all others. */
+static const double LEAST_SHAPE = -1;
+
 static pieces take_apart(const double* const p[4])
 {
   pieces out;
@@ -57,29 +60,54 @@ static double shortest_squared(const pieces* cell)
   return least;
 }
 
-/* The sine of the angle at an edge is 6 volume length / (normal normal). */
-double mlim_shape_of(const mlim_shape_bound* bound, const double* const points[4])
+/* The sine of the angle at an edge is 6 volume length / (normal normal). Most of the time of the
+   sliver removal passes here: no loops, no pieces. */
+double mlim_shape_of(const mlim_shape_bound* bound, const double* const p[4])
 {
-  const pieces cell = take_apart(points);
-  double inverse[4];
-  for (int k = 0; k < 4; ++k)
+  double a[3];
+  double b[3];
+  double c[3];
+  mlim_subtract(p[1], p[0], a);
+  mlim_subtract(p[2], p[0], b);
+  mlim_subtract(p[3], p[0], c);
+  double bc[3];
+  double ca[3];
+  double ab[3];
+  mlim_cross(b, c, bc);
+  mlim_cross(c, a, ca);
+  mlim_cross(a, b, ab);
+  const double volume = mlim_dot(a, bc);
+  const double aa = mlim_dot(a, a);
+  const double bb = mlim_dot(b, b);
+  const double cc = mlim_dot(c, c);
+  const double dot_ab = mlim_dot(a, b);
+  const double dot_ac = mlim_dot(a, c);
+  const double dot_bc = mlim_dot(b, c);
+  const double ab_ab = aa + bb - 2 * dot_ab; /* squared edges between the other three vertices */
+  const double ac_ac = aa + cc - 2 * dot_ac;
+  const double bc_bc = bb + cc - 2 * dot_bc;
+  const double sum[3] = { bc[0] + ca[0] + ab[0], bc[1] + ca[1] + ab[1], bc[2] + ca[2] + ab[2] };
+  const double n0 = 1 / mlim_dot(sum, sum);
+  const double n1 = 1 / mlim_dot(bc, bc);
+  const double n2 = 1 / mlim_dot(ca, ca);
+  const double n3 = 1 / mlim_dot(ab, ab);
+  const double least = mlim_min(mlim_min(mlim_min(aa * n2 * n3, bb * n1 * n3), cc * n1 * n2),
+    mlim_min(mlim_min(ab_ab * n0 * n3, ac_ac * n0 * n2), bc_bc * n0 * n1));
+  const double sine = volume * sqrt(least);
+  if (!(volume > 0) || !(sine > 0))
   {
-    inverse[k] = 1 / mlim_dot(cell.normals[k], cell.normals[k]);
+    return isfinite(sine) ? mlim_max(sine / bound->sine, LEAST_SHAPE) : LEAST_SHAPE;
   }
-  double least = INFINITY;
-  for (int e = 0; e < 6; ++e)
+  const double shortest =
+    mlim_min(mlim_min(mlim_min(aa, bb), cc), mlim_min(mlim_min(ab_ab, ac_ac), bc_bc));
+  double center[3];
+  for (int k = 0; k < 3; ++k)
   {
-    const int* faces = PAIRS[5 - e];
-    least = mlim_min(least, cell.edges_squared[e] * inverse[faces[0]] * inverse[faces[1]]);
-  }
-  const double sine = cell.volume * sqrt(least);
-  if (!(cell.volume > 0) || !(sine > 0))
-  {
-    return isfinite(sine) ? sine : -1;
+    center[k] = aa * bc[k] + bb * ca[k] + cc * ab[k];
   }
   const double allowed = bound->radius_edge_ratio * bound->radius_edge_ratio;
-  const double part = allowed * shortest_squared(&cell) / cell.radius_squared;
-  const double shape = mlim_min(sine / bound->sine, sqrt(sqrt(part)));
+  const double part = allowed * shortest * 4 * volume * volume / mlim_dot(center, center);
+  const double shape = mlim_min(sine / bound->sine, part < 1 ? sqrt(sqrt(part)) : INFINITY);
   return shape < 1 ? shape : 1 + sine;
 }
 
