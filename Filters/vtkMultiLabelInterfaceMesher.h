@@ -69,7 +69,8 @@
  *   `VertexCount`, `SurfaceVertexCount`, `CellCount`, `InsertionCount`, `AddedVertexCount`;
  *   `SliverCount` tetrahedra below 10 or above 170 degrees after refinement, of which
  *   `UnresolvedSliverCount` are left after `ExchangeCount` steps; `UnresolvedSizeCount`,
- *   `UnresolvedRatioCount` (without a ball's vertex); `MinDihedralAngle`, `MaxDihedralAngle` in
+ *   `UnresolvedRatioCount` (without a ball's vertex), `UnresolvedBoxCount` (places where the kept
+ *   background does not reach the box); `MinDihedralAngle`, `MaxDihedralAngle` in
  *   degrees, `MaxRadiusEdgeRatio` (without a ball's vertex), `MinCellVolume`.
  *
  * After an error or an abort the output is empty, with its arrays.
@@ -272,8 +273,8 @@ public:
 
   ///@{
   /**
-   * Whether the volume has the background's tetrahedra too, with the id 0: those between vertices
-   * of the mesh, so that the image's box is filled as far as there are some. Default: off.
+   * Whether the volume has the background's tetrahedra too, with the id 0, so that it fills the
+   * image's box. Where the background reaches the box there is still no surface. Default: off.
    */
   vtkSetMacro(KeepBackground, bool);
   vtkGetMacro(KeepBackground, bool);

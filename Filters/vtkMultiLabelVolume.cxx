@@ -90,6 +90,7 @@ void WriteVolumeFigures(
   WriteCount("InsertionCount", report.insertion_count, field);
   WriteCount("UnresolvedSizeCount", report.unresolved_size_count, field);
   WriteCount("UnresolvedRatioCount", report.unresolved_ratio_count, field);
+  WriteCount("UnresolvedBoxCount", report.unresolved_box_count, field);
   WriteCount("SliverCount", report.sliver_count, field);
   WriteCount("UnresolvedSliverCount", report.unresolved_sliver_count, field);
   WriteCount("ExchangeCount", report.exchange_count, field);

@@ -1,9 +1,11 @@
 #include "cells.h"
 
+#include "box.h"
 #include "memory.h"
 #include "queue.h"
 #include "status.h"
 #include "vector.h"
+#include "zone.h"
 
 #include <math.h>
 
@@ -147,53 +149,10 @@ static mlim_status report(cells* c)
 
 /* ---- insertion ---- */
 
-/* Whether the zone may be emptied for a point: it has one label, that of a region, and the point
-   keeps its distance. No facet between two labels dies then, as its two cells are not both there. */
-static int may_fill(const cells* c, const mlim_delaunay_zone* zone, const double point[3],
-  int32_t label, double least_squared)
+static int reserve_generations(cells* c)
 {
-  for (size_t k = 0; k < zone->count; ++k)
-  {
-    const mlim_cell* cell = &c->complex->cells[zone->cells[k]];
-    if (cell->label != label)
-    {
-      return 0;
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      const mlim_vertex* v = &c->complex->vertices[cell->vertices[i]];
-      if (v->kind == MLIM_VERTEX_FAR ||
-          mlim_distance_squared(v->point, point) - v->weight < least_squared)
-      {
-        return 0;
-      }
-    }
-  }
-  return zone->count > 0;
-}
-
-/* Tells the cell beyond the facet opposite to vertex `index` of its new neighbour. */
-static void link_outer(mlim_complex* complex, int32_t id, int index)
-{
-  const mlim_cell* cell = &complex->cells[id];
-  mlim_cell* outer = &complex->cells[cell->neighbors[index]];
-  for (int j = 0; j < 4; ++j)
-  {
-    const int32_t v = outer->vertices[j];
-    if (v != cell->vertices[(index + 1) & 3] && v != cell->vertices[(index + 2) & 3] &&
-        v != cell->vertices[(index + 3) & 3])
-    {
-      outer->neighbors[j] = id;
-      return;
-    }
-  }
-}
-
-static int reserve_cells(cells* c, size_t needed)
-{
-  mlim_complex* complex = c->complex;
-  if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells) ||
-      mlim_reserve(&c->generations, &c->generation_capacity, needed, sizeof *c->generations))
+  const size_t needed = c->complex->cell_count;
+  if (mlim_reserve(&c->generations, &c->generation_capacity, needed, sizeof *c->generations))
   {
     return 1;
   }
@@ -201,83 +160,29 @@ static int reserve_cells(cells* c, size_t needed)
   {
     c->generations[c->generation_count] = 0;
   }
-  for (; complex->cell_count < needed; ++complex->cell_count)
-  {
-    complex->cells[complex->cell_count] = (mlim_cell){ .vertices = { -1, -1, -1, -1 } };
-  }
   return 0;
-}
-
-static mlim_status take_cells(
-  cells* c, const mlim_delaunay_cells* made, int32_t vertex, int32_t label)
-{
-  mlim_complex* complex = c->complex;
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    if (reserve_cells(c, (size_t)made->cells[k].id + 1))
-    {
-      return mlim_fail_memory(c->context, "the triangulation");
-    }
-  }
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    const mlim_delaunay_cell* m = &made->cells[k];
-    mlim_cell* cell = &complex->cells[m->id];
-    *cell = (mlim_cell){ .label = label };
-    mlim_copy(m->center, cell->center);
-    for (int i = 0; i < 4; ++i)
-    {
-      cell->vertices[i] = m->vertices[i];
-      cell->neighbors[i] = m->neighbors[i];
-      complex->vertices[m->vertices[i]].cell = m->id;
-    }
-  }
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    const int32_t id = made->cells[k].id;
-    for (int i = 0; i < 4; ++i)
-    {
-      if (complex->cells[id].vertices[i] == vertex &&
-          complex->cells[id].neighbors[i] != MLIM_NO_CELL)
-      {
-        link_outer(complex, id, i);
-      }
-    }
-    if (enqueue(c, id))
-    {
-      return mlim_fail_memory(c->context, "the queue of cells");
-    }
-  }
-  return MLIM_OK;
 }
 
 static mlim_status fill(
   cells* c, const mlim_delaunay_zone* zone, const double point[3], int32_t label)
 {
-  mlim_complex* complex = c->complex;
-  if (complex->vertex_count >= complex->vertex_limit)
-  {
-    return mlim_fail(c->context, MLIM_VERTEX_LIMIT,
-      "The mesh has %zu vertices, the limit; what is still bad is counted.",
-      complex->vertex_limit - MLIM_FAR_VERTICES);
-  }
-  if (mlim_reserve(&complex->vertices, &complex->vertex_capacity, complex->vertex_count + 1,
-        sizeof *complex->vertices))
-  {
-    return mlim_fail_memory(c->context, "the triangulation");
-  }
+  mlim_delaunay_cells made;
   for (size_t k = 0; k < zone->count; ++k)
   {
-    complex->cells[zone->cells[k]].vertices[0] = -1;
     ++c->generations[zone->cells[k]];
   }
-  const int32_t vertex = (int32_t)complex->vertex_count++;
-  complex->vertices[vertex] = (mlim_vertex){ .kind = MLIM_VERTEX_INSIDE, .ball = -1 };
-  mlim_copy(point, complex->vertices[vertex].point);
+  const mlim_status status = mlim_zone_fill(c->complex, zone, point, label, c->context, &made);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
   ++c->result.insertion_count;
-  mlim_delaunay_cells made;
-  const mlim_status status = mlim_delaunay_fill(complex->delaunay, c->context, &made);
-  return status == MLIM_OK ? take_cells(c, &made, vertex, label) : status;
+  int failed = reserve_generations(c);
+  for (size_t k = 0; k < made.count && !failed; ++k)
+  {
+    failed = enqueue(c, made.cells[k].id);
+  }
+  return failed ? mlim_fail_memory(c->context, "the queue of cells") : MLIM_OK;
 }
 
 /* Points of the box's faces are the caps' alone. */
@@ -322,7 +227,9 @@ static mlim_status mend(cells* c, int32_t id, const verdict* v)
     {
       return status;
     }
-    if (may_fill(c, &zone, point, cell.label, k == 0 ? floor : mlim_max(floor, off)))
+    const mlim_zone_demand demand = { .label = cell.label,
+      .least_squared = k == 0 ? floor : mlim_max(floor, off) };
+    if (mlim_zone_is_free(c->complex, &zone, point, &demand))
     {
       return fill(c, &zone, point, cell.label);
     }
@@ -404,7 +311,7 @@ static mlim_status start(cells* c)
   const size_t labels = (size_t)mlim_field_label_count(field);
   c->sizes = mlim_allocate(labels, sizeof *c->sizes);
   c->floors = mlim_allocate(labels, sizeof *c->floors);
-  if (c->sizes == NULL || c->floors == NULL || reserve_cells(c, c->complex->cell_count))
+  if (c->sizes == NULL || c->floors == NULL || reserve_generations(c))
   {
     return mlim_fail_memory(c->context, "the refinement of cells");
   }
@@ -426,12 +333,28 @@ static mlim_status start(cells* c)
   return MLIM_OK;
 }
 
+static mlim_status fill_box(cells* c)
+{
+  const size_t before = c->complex->vertex_count;
+  const double size = c->sizes[mlim_field_outside_label(c->complex->oracle.field)];
+  const mlim_status status =
+    mlim_box_fill(c->complex, size, c->context, &c->result.unresolved_box_count);
+  c->result.insertion_count += c->complex->vertex_count - before;
+  return status == MLIM_OK && reserve_generations(c)
+           ? mlim_fail_memory(c->context, "the refinement of cells")
+           : status;
+}
+
 mlim_status mlim_cells_refine(mlim_complex* complex, const mlim_options* options, double done,
   mlim_context* context, mlim_cells_result* out)
 {
   *out = (mlim_cells_result){ 0 };
   cells c = { .complex = complex, .options = options, .context = context, .done = done };
   mlim_status status = start(&c);
+  if (status == MLIM_OK && options->keep_background)
+  {
+    status = fill_box(&c);
+  }
   if (status == MLIM_OK)
   {
     status = enqueue_all(&c);

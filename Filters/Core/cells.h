@@ -11,6 +11,7 @@ typedef struct mlim_cells_result
   size_t insertion_count;
   size_t unresolved_size_count;  /* cells above their size that no point could mend */
   size_t unresolved_ratio_count; /* cells above the radius-edge ratio, without a ball vertex */
+  size_t unresolved_box_count;   /* cells of the background that reach out of the box */
 } mlim_cells_result;
 
 /* Refines the complex, whose records of facets are void afterwards. `done` is the share of the

@@ -183,7 +183,7 @@ typedef struct mlim_options
   const mlim_label_size* label_sizes; /* borrowed; in place of cell_size; NULL: none */
   size_t label_size_count;
   int remove_slivers;  /* 0: the cells stay Delaunay */
-  int keep_background; /* 0: the volume is of the regions only */
+  int keep_background; /* 0: the volume is of the regions only; else it fills the box */
 } mlim_options;
 
 /* Lengths as multiples of the field's spacing (cube root of the voxel's volume): facet_size 2,
@@ -332,6 +332,7 @@ typedef struct mlim_volume_report
   size_t insertion_count;         /* vertices that refinement added inside the regions */
   size_t unresolved_size_count;   /* cells that stayed above their size: no place for a point */
   size_t unresolved_ratio_count;  /* cells above the radius-edge ratio, without a ball vertex */
+  size_t unresolved_box_count;    /* places where the kept background does not reach the box */
   size_t sliver_count;            /* after refinement: cells with a dihedral angle below 10 degrees
                                      or above 170 */
   size_t unresolved_sliver_count; /* of them left at the end */

@@ -64,7 +64,15 @@ int mlim_solid_star(mlim_solid* solid, int32_t cell, int32_t vertex, mlim_solid_
     for (int i = 0; i < 4; ++i)
     {
       const int32_t other = c->neighbors[i];
-      if (c->vertices[i] == vertex || solid->cells[other].mark == stamp)
+      if (c->vertices[i] == vertex)
+      {
+        continue;
+      }
+      if (!mlim_solid_is_open(solid, c, i))
+      {
+        return 0;
+      }
+      if (solid->cells[other].mark == stamp)
       {
         continue;
       }

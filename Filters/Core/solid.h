@@ -76,7 +76,7 @@ double mlim_solid_shape(const mlim_solid* solid, const int32_t vertices[4]);
 int mlim_solid_is_open(const mlim_solid* solid, const mlim_solid_cell* cell, int index);
 
 /* The cells of a vertex that is not fixed, from one of them on, into change->old_cells. Returns 0 if
-   they are too many. */
+   they are too many, or the vertex is on the surface after all. */
 int mlim_solid_star(mlim_solid* solid, int32_t cell, int32_t vertex, mlim_solid_change* change);
 
 /* Takes out the old cells and puts in the new ones, all of which get `label`. The new cells are

@@ -1,5 +1,6 @@
 #include "volume.h"
 
+#include "box.h"
 #include "cells.h"
 #include "memory.h"
 #include "slivers.h"
@@ -31,30 +32,42 @@ typedef struct maker
   mlim_solid solid;
   int32_t* vertices;   /* of the solid, for each of the complex; -1 */
   int32_t* ids;        /* of the solid's cell, for each of the complex's; -1 */
-  double* ratio_parts; /* per vertex of the mesh, see mlim_solid */
+  double* ratio_parts; /* per fixed vertex, see mlim_solid */
   mlim_volume* out;
 } maker;
 
-/* The surface's vertices come first, in the order of the mesh. */
+static void take_vertex(maker* m, int32_t vertex)
+{
+  if (m->vertices[vertex] < 0)
+  {
+    mlim_copy(
+      m->input->complex->vertices[vertex].point, m->solid.points + 3 * m->solid.vertex_count);
+    m->vertices[vertex] = (int32_t)m->solid.vertex_count++;
+  }
+}
+
+/* The surface's vertices come first, in the order of the mesh, then those on the box: both stay. */
 static void take_vertices(maker* m)
 {
   const mlim_complex* complex = m->input->complex;
   const mlim_mesh* mesh = m->input->mesh;
   mlim_solid* solid = &m->solid;
   memcpy(solid->points, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
-  solid->fixed_count = mesh->vertex_count;
   solid->vertex_count = mesh->vertex_count;
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  for (int is_inside = 0; is_inside < 2; ++is_inside)
   {
-    for (int k = 0; k < 4 && m->ids[c] >= 0; ++k)
+    for (size_t c = 0; c < complex->cell_count; ++c)
     {
-      const int32_t v = complex->cells[c].vertices[k];
-      if (m->vertices[v] < 0)
+      for (int k = 0; k < 4 && m->ids[c] >= 0; ++k)
       {
-        mlim_copy(complex->vertices[v].point, solid->points + 3 * solid->vertex_count);
-        m->vertices[v] = (int32_t)solid->vertex_count++;
+        const int32_t v = complex->cells[c].vertices[k];
+        if (is_inside || mlim_box_faces(complex, complex->vertices[v].point) != 0)
+        {
+          take_vertex(m, v);
+        }
       }
     }
+    solid->fixed_count = is_inside ? solid->fixed_count : solid->vertex_count;
   }
 }
 
@@ -82,7 +95,8 @@ static void take_cells(maker* m)
 
 static int is_ball(const mlim_mesh* mesh, size_t vertex)
 {
-  return mesh->node_types[vertex] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
+  return vertex < mesh->vertex_count &&
+         mesh->node_types[vertex] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
 }
 
 /* Cells near balls may have any ratio, and those at triangles that are above it themselves a larger
@@ -91,7 +105,7 @@ static void find_ratio_parts(maker* m)
 {
   const mlim_mesh* mesh = m->input->mesh;
   const double bound = m->solid.bound.radius_edge_ratio;
-  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  for (size_t v = 0; v < m->solid.fixed_count; ++v)
   {
     m->ratio_parts[v] = is_ball(mesh, v) ? INFINITY : 1;
   }
@@ -112,7 +126,7 @@ static mlim_status take_solid(maker* m)
   const mlim_complex* complex = m->input->complex;
   m->ids = mlim_allocate(complex->cell_count, sizeof *m->ids);
   m->vertices = mlim_allocate(complex->vertex_count, sizeof *m->vertices);
-  m->ratio_parts = mlim_allocate(m->input->mesh->vertex_count, sizeof *m->ratio_parts);
+  m->ratio_parts = mlim_allocate(complex->vertex_count, sizeof *m->ratio_parts);
   if (m->ids == NULL || m->vertices == NULL || m->ratio_parts == NULL)
   {
     return mlim_fail_memory(m->context, "the volume's cells");
@@ -136,8 +150,8 @@ static mlim_status take_solid(maker* m)
     .radius_edge_ratio = RATIO_PART * m->input->options->cell_radius_edge_ratio };
   m->solid.cell_count = count;
   m->solid.ratio_parts = m->ratio_parts;
-  find_ratio_parts(m);
   take_vertices(m);
+  find_ratio_parts(m);
   take_cells(m);
   return MLIM_OK;
 }
@@ -168,7 +182,7 @@ static void measure_cell(maker* m, const mlim_solid_cell* cell)
   {
     points[k] = m->solid.points + 3 * (size_t)cell->vertices[k];
     const size_t v = (size_t)cell->vertices[k];
-    has_ball |= v < m->solid.fixed_count && is_ball(m->input->mesh, v);
+    has_ball |= is_ball(m->input->mesh, v);
   }
   const mlim_shape_figures f = mlim_shape_measure(points);
   report->min_dihedral_angle = mlim_min(report->min_dihedral_angle, f.min_angle);
@@ -194,12 +208,12 @@ static mlim_status read_volume(maker* m)
     mlim_release(renumbered);
     return status == MLIM_OK ? mlim_fail_memory(m->context, "the volume") : status;
   }
-  out->surface_vertex_count = solid->fixed_count;
-  out->vertex_count = solid->fixed_count;
-  memcpy(out->vertices, solid->points, 3 * solid->fixed_count * sizeof *out->vertices);
+  out->surface_vertex_count = m->input->mesh->vertex_count;
+  out->vertex_count = out->surface_vertex_count;
+  memcpy(out->vertices, solid->points, 3 * out->vertex_count * sizeof *out->vertices);
   for (size_t v = 0; v < solid->vertex_count; ++v)
   {
-    renumbered[v] = v < solid->fixed_count ? (int32_t)v : -1;
+    renumbered[v] = v < out->surface_vertex_count ? (int32_t)v : -1;
   }
   out->report.min_dihedral_angle = 180;
   out->report.min_cell_volume = INFINITY;
@@ -240,6 +254,7 @@ static mlim_status make(maker* m)
   {
     report->insertion_count = refined.insertion_count;
     report->unresolved_size_count = refined.unresolved_size_count;
+    report->unresolved_box_count = refined.unresolved_box_count;
     status = take_solid(m);
   }
   if (status == MLIM_OK && options->remove_slivers)

@@ -57,9 +57,9 @@ struct Scene
 };
 
 // Facets and cells of one size. The scene's sizes give about 10,000 to 2,000,000 cells.
-const Scene speed_scenes[] = { { "disjoint_balls", 4.8, 1, false },
-  { "disjoint_balls", 2.55, 1, false }, { "disjoint_balls", 1.55, 1, false },
-  { "disjoint_balls", 0.89, 1, true }, { "disjoint_balls", 0.7, 1, true } };
+const Scene speed_scenes[] = { { "disjoint_balls", 3.8, 1, false },
+  { "disjoint_balls", 2.2, 1, false }, { "disjoint_balls", 1.38, 1, false },
+  { "disjoint_balls", 0.81, 1, true }, { "disjoint_balls", 0.64, 1, true } };
 
 // Default options.
 const Scene image_scenes[] = { { "spheres8_indicators", 0, 2, false },

@@ -234,6 +234,40 @@ static void test_limit(void)
   image_free(im);
 }
 
+/* With the background the box is full, whatever reaches its faces, and the surface is the same. */
+static void test_background(int kind)
+{
+  const int before = check_failures;
+  const shape s = shape_of(kind);
+  image* im = shape_sample(&s);
+  mlim_options options = run_options(1);
+  run plain;
+  run r;
+  CHECK(make(im, &options, &plain) == MLIM_OK);
+  options.keep_background = 1;
+  CHECK(make(im, &options, &r) == MLIM_OK);
+  CHECK(is_same_mesh(&plain.mesh, &r.mesh));
+  audit_volume_of(r.field, &r.mesh, &r.volume, 1);
+  CHECK_COUNT(r.volume.report.unresolved_box_count, 0);
+  double sum = 0;
+  for (size_t l = 0; l < r.volume.label_count; ++l)
+  {
+    sum += r.volume.label_volumes[l];
+    if ((int32_t)l != mlim_field_outside_label(r.field))
+    {
+      const double same = plain.volume.label_volumes[l];
+      CHECK_BELOW(fabs(r.volume.label_volumes[l] - same), 1e-9 * same);
+    }
+  }
+  const double box = (s.dims[0] - 1.0) * (s.dims[1] - 1.0) * (s.dims[2] - 1.0);
+  CHECK_BELOW(fabs(sum / box - 1), 1e-12);
+  CHECK(measure(&r, 1).min_angle >= 5);
+  run_free(&plain);
+  run_free(&r);
+  image_free(im);
+  shape_report(s.name, before);
+}
+
 /* Every face of a block is flat, and its volume exact. */
 static void test_block(void)
 {
@@ -257,6 +291,7 @@ int main(void)
   for (int kind = 0; kind < SHAPE_COUNT; ++kind)
   {
     test_shape(kind);
+    test_background(kind);
   }
   test_size();
   test_label_size();
