@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Meshes the interfaces of an image and writes surface, curves and balls.
+"""Meshes the interfaces of an image and writes surface, curves and balls, and the volume if asked.
 
     python3 ExampleData/mesh.py IMAGE.vti FOLDER [--option value ...]
 
-Options are those of mlim.mesh, with dashes: --facet-size 1.5 --background complement.
+Options are those of mlim.mesh, with dashes: --facet-size 1.5 --background complement
+--volume True.
 """
 
 import ast
@@ -39,7 +40,12 @@ def main():
     if len(sys.argv) < 3 or len(sys.argv) % 2 == 0:
         sys.exit(__doc__)
     image, folder = mlim.read(sys.argv[1]), Path(sys.argv[2])
-    surface = mlim.mesh(image, **parse_options(sys.argv[3:]))
+    options = parse_options(sys.argv[3:])
+    surface = mlim.mesh(image, **options)
+    if options.get("volume"):
+        surface, volume = surface
+        print(mlim.report(volume))
+        mlim.write(volume, folder / "volume.vtu")
     print(mlim.report(surface))
     write(surface, folder / "surface.vtp")
 
