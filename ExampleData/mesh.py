@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Meshes the interfaces of an image and writes surface, curves and balls, and the volume if asked.
+"""Meshes the interfaces of an image and writes surface, curves and balls.
 
     python3 ExampleData/mesh.py IMAGE.vti FOLDER [--option value ...]
 
-Options are those of mlim.mesh, with dashes: --facet-size 1.5 --background complement
---volume True.
+Options are those of mlim.mesh, with dashes: --facet-size 1.5 --background complement.
 """
 
 import ast
@@ -40,12 +39,7 @@ def main():
     if len(sys.argv) < 3 or len(sys.argv) % 2 == 0:
         sys.exit(__doc__)
     image, folder = mlim.read(sys.argv[1]), Path(sys.argv[2])
-    options = parse_options(sys.argv[3:])
-    surface = mlim.mesh(image, **options)
-    if options.get("volume"):
-        surface, volume = surface
-        print(mlim.report(volume))
-        mlim.write(volume, folder / "volume.vtu")
+    surface = mlim.mesh(image, **parse_options(sys.argv[3:]))
     print(mlim.report(surface))
     write(surface, folder / "surface.vtp")
 

@@ -26,20 +26,28 @@ fi
 install_packages "${packages[@]}"
 build_preset release
 
-# mesh IMAGE FOLDER [OPTION VALUE ...]
+# mesh IMAGE VOLUME.vtu [OPTION=VALUE ...]
 mesh() {
-  mkdir -p "$2"
   say "Meshing $1"
-  PYTHONPATH=$(python_path "$repository/build/release") \
-    "$python" "$here/mesh.py" "$@" --volume True
+  mkdir -p "$(dirname "$2")"
+  PYTHONPATH=$(python_path "$repository/build/release") "$python" -c '
+import sys
+import mlim
+
+options = {name: float(value) for name, value in (word.split("=") for word in sys.argv[3:])}
+_, volume = mlim.mesh(sys.argv[1], volume=True, **options)
+print(mlim.report(volume))
+mlim.write_volume(volume, sys.argv[2])
+' "$@"
 }
 
-mesh "$here/spheres.vti" "$work/spheres"
+mesh "$here/spheres.vti" "$work/spheres/volume.vtu"
 atlas=${MLIM_DATA:-}/brain_atlas_mni_prob.vti
 if [[ -f "$atlas" ]]; then
-  mesh "$atlas" "$work/atlas" --facet-size 10 --facet-distance 2 --cell-size 10 --volume-tolerance 0
+  mesh "$atlas" "$work/atlas/volume.vtu" \
+    facet_size=10 facet_distance=2 cell_size=10 volume_tolerance=0
 else
-  mesh "$here/tissue.vti" "$work/atlas"
+  mesh "$here/tissue.vti" "$work/atlas/volume.vtu"
 fi
 say "Drawing"
 on_screen "$python" "$here/render_volume.py" "$picture" \

@@ -128,7 +128,7 @@ class TestFiles(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         path = Path(folder.name) / name
-        mlim.write(self.volume, path, surface)
+        mlim.write_volume(self.volume, path, surface)
         return path
 
     def check_cells(self, read):

@@ -4,13 +4,13 @@
     surface = mlim.mesh("atlas.vti", facet_size=2.0)
     print(mlim.report(surface))
     surface, volume = mlim.mesh("atlas.vti", facet_size=2.0, volume=True)
-    mlim.write(volume, "atlas.msh")
+    mlim.write_volume(volume, "atlas.msh")
 
 The filters are here as well, for pipelines: vtkMultiLabelInterfaceMesher,
 vtkMultiLabelCurveExtractor and vtkMultiLabelCurveProtector.
 """
 
-from .exporting import write
+from .exporting import write_volume
 from .meshing import MeshError, mesh
 from .readers import read
 from .reporting import report
@@ -30,5 +30,5 @@ __all__ = [
     "vtkMultiLabelCurveProtector",
     "vtkMultiLabelImageAlgorithm",
     "vtkMultiLabelInterfaceMesher",
-    "write",
+    "write_volume",
 ]

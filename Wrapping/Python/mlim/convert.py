@@ -11,7 +11,7 @@ import sys
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-from .exporting import write
+from .exporting import write_volume
 
 
 def _read(reader, path):
@@ -31,7 +31,7 @@ def main(words: list[str] | None = None) -> int:
     try:
         volume = _read(vtkXMLUnstructuredGridReader(), given.volume)
         surface = _read(vtkXMLPolyDataReader(), given.surface) if given.surface else None
-        write(volume, given.out, surface)
+        write_volume(volume, given.out, surface)
     except (ImportError, OSError, ValueError) as error:
         print(f"mlim.convert: {error}", file=sys.stderr)
         return 1

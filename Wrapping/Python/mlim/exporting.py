@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _FORMATS = {".msh": "gmsh22", ".inp": "abaqus"}
 
 
-def write(
+def write_volume(
     volume: vtkUnstructuredGrid,
     path: str | os.PathLike[str],
     surface: vtkPolyData | None = None,
