@@ -20,7 +20,7 @@ order='
 0 base          mlim vector triangle cubic tie
 1 services      memory status
 2 pieces        samples label_sets point_grid
-2 solid         shape solid exchange slivers
+2 solid         shape solid climb exchange slivers
 3 field         plateau field clearance field_build options components
 4 oracle        oracle crossings
 4 curves        network grow curve_face curve_cell crease clean corner curves

@@ -20,6 +20,9 @@ int mlim_exchange_vertex(mlim_solid* solid, mlim_solid_change* change, int32_t c
 /* Vertex `index`, unless fixed, moves. */
 int mlim_exchange_move(mlim_solid* solid, mlim_solid_change* change, int32_t cell, int index);
 
+/* The same, and other cells round it become cells of it. */
+int mlim_exchange_star(mlim_solid* solid, mlim_solid_change* change, int32_t cell, int index);
+
 /* A new vertex takes the place of faces round the cell. */
 int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t cell);
 

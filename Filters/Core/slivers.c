@@ -162,6 +162,10 @@ static int better(remover* r, int32_t cell)
   {
     done = mlim_exchange_vertex(r->solid, r->change, cell, k);
   }
+  for (int k = 0; k < 4 && done == 0 && r->may_insert; ++k)
+  {
+    done = mlim_exchange_star(r->solid, r->change, cell, k);
+  }
   if (done == 0 && r->may_insert && r->solid->vertex_count < r->vertex_limit)
   {
     const size_t before = r->solid->vertex_count;
