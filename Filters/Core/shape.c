@@ -135,17 +135,28 @@ void mlim_shape_center(const double* const points[4], double out[3])
   }
 }
 
+/* The angles grow as the cosines fall: only the first and the last are needed as angles. */
 mlim_shape_figures mlim_shape_measure(const double* const points[4])
 {
   const pieces cell = take_apart(points);
-  mlim_shape_figures out = { .volume = cell.volume / 6,
-    .min_angle = 180,
-    .radius_edge_ratio = sqrt(cell.radius_squared / shortest_squared(&cell)) };
+  double lengths[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    lengths[k] = sqrt(mlim_dot(cell.normals[k], cell.normals[k]));
+  }
+  int first = 0;
+  int last = 0;
+  double cosines[6];
   for (int e = 0; e < 6; ++e)
   {
-    const double angle = angle_between(&cell, PAIRS[e][0], PAIRS[e][1]);
-    out.min_angle = mlim_min(out.min_angle, angle);
-    out.max_angle = mlim_max(out.max_angle, angle);
+    const int* faces = PAIRS[e];
+    cosines[e] = -mlim_dot(cell.normals[faces[0]], cell.normals[faces[1]]) /
+                 (lengths[faces[0]] * lengths[faces[1]]);
+    first = cosines[e] > cosines[first] ? e : first;
+    last = cosines[e] < cosines[last] ? e : last;
   }
-  return out;
+  return (mlim_shape_figures){ .volume = cell.volume / 6,
+    .min_angle = angle_between(&cell, PAIRS[first][0], PAIRS[first][1]),
+    .max_angle = angle_between(&cell, PAIRS[last][0], PAIRS[last][1]),
+    .radius_edge_ratio = sqrt(cell.radius_squared / shortest_squared(&cell)) };
 }

@@ -11,6 +11,11 @@
 #include <math.h>
 #include <string.h>
 
+enum
+{
+  LOOK_EVERY = 1 << 17 /* cells read between two looks at the host: about 30 ms */
+};
+
 /* Shares of the stage. */
 static const double REFINED = 0.5;
 static const double MENDED = 0.95;
@@ -71,11 +76,19 @@ static void take_vertices(maker* m)
   }
 }
 
-static void take_cells(maker* m)
+/* Looks at the host every now and then. */
+static mlim_status look(maker* m, size_t cell, double fraction)
 {
+  return cell % LOOK_EVERY == 0 ? mlim_progress(m->context, MLIM_STAGE_VOLUME, fraction) : MLIM_OK;
+}
+
+static mlim_status take_cells(maker* m)
+{
+  mlim_status status = MLIM_OK;
   const mlim_complex* complex = m->input->complex;
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  for (size_t c = 0; c < complex->cell_count && status == MLIM_OK; ++c)
   {
+    status = look(m, c, REFINED);
     if (m->ids[c] < 0)
     {
       continue;
@@ -91,6 +104,7 @@ static void take_cells(maker* m)
     }
     cell->shape = mlim_solid_shape(&m->solid, cell->vertices);
   }
+  return status;
 }
 
 static int is_ball(const mlim_mesh* mesh, size_t vertex)
@@ -152,8 +166,7 @@ static mlim_status take_solid(maker* m)
   m->solid.ratio_parts = m->ratio_parts;
   take_vertices(m);
   find_ratio_parts(m);
-  take_cells(m);
-  return MLIM_OK;
+  return take_cells(m);
 }
 
 /* ---- the product ---- */
@@ -201,7 +214,7 @@ static mlim_status read_volume(maker* m)
 {
   mlim_solid* solid = &m->solid;
   mlim_volume* out = m->out;
-  const mlim_status status = allocate_volume(m);
+  mlim_status status = allocate_volume(m);
   int32_t* renumbered = mlim_allocate(solid->vertex_count, sizeof *renumbered);
   if (status != MLIM_OK || renumbered == NULL)
   {
@@ -217,8 +230,9 @@ static mlim_status read_volume(maker* m)
   }
   out->report.min_dihedral_angle = 180;
   out->report.min_cell_volume = INFINITY;
-  for (size_t c = 0; c < solid->cell_count; ++c)
+  for (size_t c = 0; c < solid->cell_count && status == MLIM_OK; ++c)
   {
+    status = look(m, c, MENDED);
     const mlim_solid_cell* cell = &solid->cells[c];
     if (cell->vertices[0] < 0)
     {
@@ -239,7 +253,7 @@ static mlim_status read_volume(maker* m)
   }
   out->report.min_cell_volume = out->cell_count > 0 ? out->report.min_cell_volume : 0;
   mlim_release(renumbered);
-  return MLIM_OK;
+  return status;
 }
 
 static mlim_status make(maker* m)
