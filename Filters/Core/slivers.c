@@ -117,7 +117,10 @@ static int collect(remover* r)
     }
     r->bad[r->bad_count++] = (bad_cell){ .shape = cell->shape, .cell = (int32_t)c };
   }
-  qsort(r->bad, r->bad_count, sizeof *r->bad, compare_bad);
+  if (r->bad_count > 0) /* without an entry there is no array */
+  {
+    qsort(r->bad, r->bad_count, sizeof *r->bad, compare_bad);
+  }
   return 0;
 }
 
