@@ -2,9 +2,10 @@
 # the shell's -e.
 # shellcheck shell=bash disable=SC2034,SC2154,SC2164
 
-# What a build needs on Debian 12 and its like: of anything, and of the module for Debian's VTK.
+# What a build needs on Debian 12 and its like: of anything, and of the module for Debian's VTK with
+# its tests.
 compile_packages=(cmake ninja-build g++ dpkg-dev libcgal-dev python3-numpy)
-build_packages=("${compile_packages[@]}" libvtk9-dev python3-vtk9)
+build_packages=("${compile_packages[@]}" libvtk9-dev python3-vtk9 libeigen3-dev python3-meshio)
 # Debian's VTK draws through X: a virtual screen serves where there is no display.
 screen_packages=(xvfb xauth libgl1-mesa-dri)
 # The interpreter that Debian's VTK is wrapped for; another python3 may come first on the PATH.

@@ -5,6 +5,7 @@
 #include "vtkMultiLabelRun.h"
 #include "vtkMultiLabelStages.h"
 #include "vtkMultiLabelSurface.h"
+#include "vtkMultiLabelVolume.h"
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -13,9 +14,11 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 using namespace vtkMultiLabel;
 
@@ -30,6 +33,14 @@ struct MeshOwner : mlim_mesh
   MeshOwner(const MeshOwner&) = delete;
   MeshOwner& operator=(const MeshOwner&) = delete;
   ~MeshOwner() { mlim_mesh_free(this); }
+};
+
+struct VolumeOwner : mlim_volume
+{
+  VolumeOwner() : mlim_volume() {}
+  VolumeOwner(const VolumeOwner&) = delete;
+  VolumeOwner& operator=(const VolumeOwner&) = delete;
+  ~VolumeOwner() { mlim_volume_free(this); }
 };
 
 // The setting of balls that came from outside, which must be of this image and these labels.
@@ -72,6 +83,7 @@ vtkMultiLabelInterfaceMesher::vtkMultiLabelInterfaceMesher()
   : BallRadiusScale(default_ball_radius_scale)
 {
   this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
 }
 
 vtkMultiLabelInterfaceMesher::~vtkMultiLabelInterfaceMesher() = default;
@@ -88,6 +100,15 @@ void vtkMultiLabelInterfaceMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CrossingTolerance: " << this->CrossingTolerance << "\n";
   os << indent << "OracleMode: " << (this->OracleMode == Exact ? "Exact" : "Bisection") << "\n";
   os << indent << "CapBoundary: " << (this->CapBoundary ? "On" : "Off") << "\n";
+  os << indent << "VolumeMesh: " << (this->VolumeMesh ? "On" : "Off") << "\n";
+  os << indent << "CellSize: " << this->CellSize << "\n";
+  for (const auto& label : this->LabelCellSizes)
+  {
+    os << indent << "LabelCellSize " << label.first << ": " << label.second << "\n";
+  }
+  os << indent << "CellRadiusEdgeRatio: " << this->CellRadiusEdgeRatio << "\n";
+  os << indent << "RemoveSlivers: " << (this->RemoveSlivers ? "On" : "Off") << "\n";
+  os << indent << "KeepBackground: " << (this->KeepBackground ? "On" : "Off") << "\n";
   os << indent << "OutputCurves: " << (this->OutputCurves ? "On" : "Off") << "\n";
   os << indent << "MinimumComponentVoxels: " << this->MinimumComponentVoxels << "\n";
   os << indent << "VertexLimit: " << this->VertexLimit << "\n";
@@ -128,26 +149,77 @@ int vtkMultiLabelInterfaceMesher::RequestInformation(
   return 1;
 }
 
+int vtkMultiLabelInterfaceMesher::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    return this->Superclass::FillOutputPortInformation(port, info);
+  }
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkUnstructuredGrid");
+  return 1;
+}
+
+vtkUnstructuredGrid* vtkMultiLabelInterfaceMesher::GetVolumeOutput()
+{
+  return vtkUnstructuredGrid::SafeDownCast(this->GetOutputDataObject(1));
+}
+
+void vtkMultiLabelInterfaceMesher::SetLabelCellSize(int id, double size)
+{
+  if (!(size >= 0.0) || size == this->GetLabelCellSize(id))
+  {
+    return;
+  }
+  if (size > 0.0)
+  {
+    this->LabelCellSizes[id] = size;
+  }
+  else
+  {
+    this->LabelCellSizes.erase(id);
+  }
+  this->Modified();
+}
+
+double vtkMultiLabelInterfaceMesher::GetLabelCellSize(int id)
+{
+  const auto found = this->LabelCellSizes.find(id);
+  return found == this->LabelCellSizes.end() ? 0.0 : found->second;
+}
+
+void vtkMultiLabelInterfaceMesher::RemoveAllLabelCellSizes()
+{
+  if (!this->LabelCellSizes.empty())
+  {
+    this->LabelCellSizes.clear();
+    this->Modified();
+  }
+}
+
 int vtkMultiLabelInterfaceMesher::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkImageData* image = vtkImageData::GetData(inputs[0]);
   vtkPolyData* balls = vtkPolyData::GetData(inputs[1]);
   vtkPolyData* out = vtkPolyData::GetData(outputs);
-  auto clear = [out]()
+  vtkUnstructuredGrid* volume = vtkUnstructuredGrid::GetData(outputs, 1);
+  auto clear = [out, volume]()
   {
     out->Initialize();
     WriteSurface({}, {}, {}, out);
+    volume->Initialize();
+    WriteVolume({}, {}, false, volume);
   };
   if (IsLaterPiece(outputs))
   {
     return Guard(this, clear, clear);
   }
   return Guard(
-    this, [&]() { this->Mesh(image, balls, out); }, clear);
+    this, [&]() { this->Mesh(image, balls, out, volume); }, clear);
 }
 
-void vtkMultiLabelInterfaceMesher::Mesh(vtkImageData* image, vtkPolyData* balls, vtkPolyData* out)
+void vtkMultiLabelInterfaceMesher::Mesh(
+  vtkImageData* image, vtkPolyData* balls, vtkPolyData* out, vtkUnstructuredGrid* volumeOut)
 {
   const Input input(image, this->GetChoice());
   this->WarnOf(input);
@@ -156,6 +228,10 @@ void vtkMultiLabelInterfaceMesher::Mesh(vtkImageData* image, vtkPolyData* balls,
                           MLIM_STAGE_CERTIFICATE }
                       : std::initializer_list<mlim_stage>{ MLIM_STAGE_FIELD, MLIM_STAGE_CURVES,
                           MLIM_STAGE_BALLS, MLIM_STAGE_SURFACE, MLIM_STAGE_CERTIFICATE });
+  if (this->VolumeMesh)
+  {
+    run.Use(MLIM_STAGE_VOLUME);
+  }
   const FieldPointer field = IndexField(input, run);
   Setting setting = MakeSetting(field.get(), input);
   mlim_options options = mlim_options_default(field.get());
@@ -169,6 +245,17 @@ void vtkMultiLabelInterfaceMesher::Mesh(vtkImageData* image, vtkPolyData* balls,
   options.oracle_mode = this->OracleMode == Exact ? MLIM_ORACLE_EXACT : MLIM_ORACLE_BISECTION;
   options.vertex_limit = static_cast<size_t>(this->VertexLimit);
   options.min_component_voxels = static_cast<size_t>(this->MinimumComponentVoxels);
+  options.cell_size = this->CellSize;
+  options.cell_radius_edge_ratio = this->CellRadiusEdgeRatio;
+  options.remove_slivers = this->RemoveSlivers ? 1 : 0;
+  options.keep_background = this->KeepBackground ? 1 : 0;
+  std::vector<mlim_label_size> labelSizes;
+  for (const auto& label : this->LabelCellSizes)
+  {
+    labelSizes.push_back({ label.first, label.second });
+  }
+  options.label_sizes = labelSizes.data();
+  options.label_size_count = labelSizes.size();
   run.End(mlim_options_complete(field.get(), run.GetContext(), &options));
 
   vtkNew<vtkPolyData> ownBalls;
@@ -191,9 +278,12 @@ void vtkMultiLabelInterfaceMesher::Mesh(vtkImageData* image, vtkPolyData* balls,
   const mlim_balls view = cover.View();
 
   MeshOwner mesh;
+  VolumeOwner volume;
   run.Begin(MLIM_STAGE_SURFACE);
   const mlim_status status =
-    mlim_mesh_refine(field.get(), &view, &options, run.GetContext(), &mesh);
+    this->VolumeMesh
+      ? mlim_volume_refine(field.get(), &view, &options, run.GetContext(), &mesh, &volume)
+      : mlim_mesh_refine(field.get(), &view, &options, run.GetContext(), &mesh);
   run.End(status);
   if (status == MLIM_VERTEX_LIMIT)
   {
@@ -219,4 +309,14 @@ void vtkMultiLabelInterfaceMesher::Mesh(vtkImageData* image, vtkPolyData* balls,
   WriteCount("BallCount", view.ball_count, out->GetFieldData());
   WriteCount("VertexLimitReached", status == MLIM_VERTEX_LIMIT ? 1 : 0, out->GetFieldData());
   run.WriteTimes(out->GetFieldData());
+
+  WriteVolume(volume, setting, shown.IsSinglePrecision, volumeOut);
+  if (this->VolumeMesh)
+  {
+    WriteSetting(setting, volumeOut->GetFieldData());
+    WriteVolumeFigures(volume, options, volumeOut);
+    WriteCount(
+      "VertexLimitReached", status == MLIM_VERTEX_LIMIT ? 1 : 0, volumeOut->GetFieldData());
+    run.WriteTimes(volumeOut->GetFieldData());
+  }
 }

@@ -18,7 +18,7 @@
  * this filter extracts and protects the curves itself, with the same result. With it, EdgeSize,
  * BallRadiusScale and JunctionMergeTolerance are those the balls were made with.
  *
- * Output: vtkPolyData in world space; verts (junctions), lines (curve edges) and triangles.
+ * Port 0 out: vtkPolyData in world space; verts (junctions), lines (curve edges) and triangles.
  *
  * Cell arrays:
  * - `BoundaryLabels` (int, 2 components, active scalars unless ActiveScalars says otherwise): ids
@@ -62,7 +62,22 @@
  *   `VertexLimitReached` (0 or 1).
  * - Quality: `MaxRadiusEdgeRatio` (triangles without a ball's vertex), `MaxBallRadiusEdgeRatio`
  *   (with one), `MeanRadiusEdgeRatio`, `MinDihedralAngle` and `MinAngle` in degrees.
- * - Seconds: `TimeField`, `TimeCurves`, `TimeBalls`, `TimeSurface`, `TimeCertificate`.
+ * - Seconds: `TimeField`, `TimeCurves`, `TimeBalls`, `TimeSurface`, `TimeCertificate`,
+ *   `TimeVolume`.
+ *
+ * Port 1 out, with VolumeMesh on: vtkUnstructuredGrid in world space, the regions filled with
+ * tetrahedra of positive volume. Regions that reach the box end at its faces. Two tetrahedra share
+ * whole faces; the faces between two labels, or with nothing beyond, are exactly the triangles of
+ * port 0 with its caps, and the first points are the points of that surface in its order.
+ * - Cell array `Label` (int, active scalars): the label's id.
+ * - Field data: `LabelIds`, `LabelNames`, `LabelVolumes` and the options, among them `CellSize`,
+ *   `CellRadiusEdgeRatio`, `LabelCellSizes` (id and size), `RemoveSlivers`, `KeepBackground`;
+ *   `VertexCount`, `SurfaceVertexCount`, `CellCount`, `InsertionCount`, `AddedVertexCount`;
+ *   `SliverCount` tetrahedra below 10 or above 170 degrees after refinement, of which
+ *   `UnresolvedSliverCount` are left after `ExchangeCount` steps; `UnresolvedSizeCount`,
+ *   `UnresolvedRatioCount` (without a ball's vertex), `UnresolvedBoxCount` (places where the kept
+ *   background does not reach the box); `MinDihedralAngle`, `MaxDihedralAngle` in
+ *   degrees, `MaxRadiusEdgeRatio` (without a ball's vertex), `MinCellVolume`.
  *
  * After an error or an abort the output is empty, with its arrays.
  *
@@ -74,7 +89,10 @@
 #include "vtkMultiLabelImageAlgorithm.h"
 #include "vtkMultiLabelInterfaceMesherModule.h" // for export macro
 
+#include <map>
+
 class vtkImageData;
+class vtkUnstructuredGrid;
 
 class VTKMULTILABELINTERFACEMESHER_EXPORT vtkMultiLabelInterfaceMesher
   : public vtkMultiLabelImageAlgorithm
@@ -235,6 +253,64 @@ public:
   void SetActiveScalarsToLabel() { this->SetActiveScalars(Label); }
   ///@}
 
+  ///@{
+  /**
+   * Whether port 1 gives the regions filled with tetrahedra. It does not change the surface.
+   * Default: off.
+   */
+  vtkSetMacro(VolumeMesh, bool);
+  vtkGetMacro(VolumeMesh, bool);
+  vtkBooleanMacro(VolumeMesh, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Bound on the circumradius of a tetrahedron, in world units. Default: 0, which means twice
+   * FacetSize.
+   */
+  vtkSetClampMacro(CellSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(CellSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * A CellSize of its own, above 0, for the label with this id; 0 takes it back. Ids that no label
+   * has are ignored.
+   */
+  void SetLabelCellSize(int id, double size);
+  double GetLabelCellSize(int id);
+  void RemoveAllLabelCellSizes();
+  ///@}
+
+  ///@{
+  /** Bound on circumradius / shortest edge of a tetrahedron, from 1 to 1e6. Default: 2. */
+  vtkSetClampMacro(CellRadiusEdgeRatio, double, 1.0, 1e6);
+  vtkGetMacro(CellRadiusEdgeRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether tetrahedra with dihedral angles below 15 or above 165 degrees are bettered after
+   * refinement, as far as the surface allows. Off: the tetrahedra stay Delaunay. Default: on.
+   */
+  vtkSetMacro(RemoveSlivers, bool);
+  vtkGetMacro(RemoveSlivers, bool);
+  vtkBooleanMacro(RemoveSlivers, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the volume has the background's tetrahedra too, with the id 0, so that it fills the
+   * image's box. Where the background reaches the box there is still no surface. Default: off.
+   */
+  vtkSetMacro(KeepBackground, bool);
+  vtkGetMacro(KeepBackground, bool);
+  vtkBooleanMacro(KeepBackground, bool);
+  ///@}
+
+  /** Port 1: the tetrahedra; empty unless VolumeMesh is on. */
+  vtkUnstructuredGrid* GetVolumeOutput();
+
 protected:
   vtkMultiLabelInterfaceMesher();
   ~vtkMultiLabelInterfaceMesher() override;
@@ -242,13 +318,15 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
   vtkMultiLabelInterfaceMesher(const vtkMultiLabelInterfaceMesher&) = delete;
   void operator=(const vtkMultiLabelInterfaceMesher&) = delete;
 
-  void Mesh(vtkImageData* image, vtkPolyData* balls, vtkPolyData* out);
+  void Mesh(
+    vtkImageData* image, vtkPolyData* balls, vtkPolyData* surface, vtkUnstructuredGrid* volume);
 
   double FacetSize = 0.0;
   double FacetSizeRange[2] = { 0.0, 0.0 };
@@ -260,6 +338,12 @@ private:
   double CrossingTolerance = 0.0;
   int OracleMode = Exact;
   bool CapBoundary = true;
+  bool VolumeMesh = false;
+  double CellSize = 0.0;
+  std::map<int, double> LabelCellSizes;
+  double CellRadiusEdgeRatio = 2.0;
+  bool RemoveSlivers = true;
+  bool KeepBackground = false;
   bool OutputCurves = true;
   vtkIdType MinimumComponentVoxels = 30;
   vtkIdType VertexLimit = 20000000;

@@ -19,10 +19,10 @@ namespace
 
 // Shares of the stages in the time of a typical run; only the look of the progress bar depends on
 // them.
-const double stage_weights[MLIM_STAGE_END] = { 0.05, 0.1, 0.05, 0.7, 0.1 };
+const double stage_weights[MLIM_STAGE_END] = { 0.05, 0.1, 0.05, 0.7, 0.1, 1.0 };
 
 const char* const stage_arrays[MLIM_STAGE_END] = { "TimeField", "TimeCurves", "TimeBalls",
-  "TimeSurface", "TimeCertificate" };
+  "TimeSurface", "TimeCertificate", "TimeVolume" };
 
 // A progress event every 20 ms, or 1/200 of the way: a user interface reads its events in them, so
 // this is also the delay of an abort, and more would cost time.
@@ -36,11 +36,19 @@ Run::Run(vtkAlgorithm* algorithm, std::initializer_list<mlim_stage> stages) : Al
   this->Context.progress = &Run::Progress;
   this->Context.parallel_for = &Run::ParallelFor;
   this->Context.user = this;
-  double total = 0.0;
   for (mlim_stage stage : stages)
   {
-    this->InUse[stage] = true;
-    total += stage_weights[stage];
+    this->Use(stage);
+  }
+}
+
+void Run::Use(mlim_stage stage)
+{
+  this->InUse[stage] = true;
+  double total = 0.0;
+  for (int s = 0; s < MLIM_STAGE_END; ++s)
+  {
+    total += this->InUse[s] ? stage_weights[s] : 0.0;
   }
   double start = 0.0;
   for (int s = 0; s < MLIM_STAGE_END; ++s)

@@ -42,6 +42,9 @@ public:
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
+  /** Counts one more stage in. Before anything is reported. */
+  void Use(mlim_stage stage);
+
   mlim_context* GetContext() { return &this->Context; }
 
   /** Shows the stage's name and starts its clock. The core's progress reports do so as well. */
@@ -50,8 +53,8 @@ public:
    * is one. */
   void End(mlim_status status);
 
-  /** Arrays TimeField, TimeCurves, TimeBalls, TimeSurface and TimeCertificate, in seconds. A stage
-   * that is not of this run keeps the time that came with the input, or gets 0. */
+  /** Arrays TimeField, TimeCurves, TimeBalls, TimeSurface, TimeCertificate and TimeVolume, in
+   * seconds. A stage that is not of this run keeps the time that came with the input, or gets 0. */
   void WriteTimes(vtkFieldData* out) const;
 
 private:

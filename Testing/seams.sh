@@ -20,15 +20,16 @@ order='
 0 base          mlim vector triangle cubic tie
 1 services      memory status
 2 pieces        samples label_sets point_grid
+2 solid         shape solid climb exchange slivers
 3 field         plateau field clearance field_build options components
 4 oracle        oracle crossings
 4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         radius_map span balls
 5 triangulation delaunay
 6 criteria      complex sides criteria disk
-7 refinement    queue seeds refine tidy spots
+7 refinement    queue seeds refine tidy spots zone box cells
 8 products      volumes edges nearest mesh quality certificate
-9 whole         verify build
+9 whole         verify volume build
 '
 
 # place_of FILE : "place part column", or nothing.

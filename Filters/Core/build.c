@@ -10,6 +10,7 @@
 #include "status.h"
 #include "tidy.h"
 #include "verify.h"
+#include "volume.h"
 #include "volumes.h"
 
 #include <math.h>
@@ -28,7 +29,8 @@ typedef struct build
   const mlim_balls* used_balls;
   size_t hidden_ball_count;
   size_t relabeled_cell_count;
-  mlim_edges edges; /* of the mesh */
+  mlim_edges edges;       /* of the mesh */
+  int32_t* mesh_vertices; /* of each of the complex's vertices, for the volume */
 } build;
 
 static mlim_status check_balls(
@@ -217,7 +219,11 @@ static mlim_status tidy(build* b, mlim_mesh* out)
 
 static mlim_status read(build* b, mlim_mesh* out)
 {
-  return mlim_mesh_read(&b->refinement.complex, b->context, out);
+  const size_t count = b->refinement.complex.vertex_count;
+  b->mesh_vertices = mlim_allocate(count, sizeof *b->mesh_vertices);
+  return b->mesh_vertices == NULL
+           ? mlim_fail_memory(b->context, "the mesh")
+           : mlim_mesh_read_mapped(&b->refinement.complex, b->context, b->mesh_vertices, out);
 }
 
 static mlim_status find_edges(build* b, mlim_mesh* out)
@@ -292,15 +298,20 @@ static mlim_status measure_field(build* b)
            : mlim_fail_memory(b->context, "the volumes of the labels");
 }
 
-mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
-  const mlim_options* options, mlim_context* context, mlim_mesh* out)
+static mlim_status fill_volume(build* b, const mlim_mesh* mesh, size_t count, mlim_volume* out)
 {
-  if (out == NULL || field == NULL || balls == NULL || options == NULL)
-  {
-    return mlim_fail(
-      context, MLIM_INVALID_ARGUMENT, "The field, the balls, the options or the result are NULL.");
-  }
-  *out = (mlim_mesh){ 0 };
+  const mlim_volume_input input = { .complex = &b->refinement.complex,
+    .mesh = mesh,
+    .mesh_vertices = b->mesh_vertices,
+    .mesh_vertices_count = count,
+    .options = b->options };
+  return mlim_volume_make(&input, b->context, out);
+}
+
+/* `volume` may be NULL: the surface alone. */
+static mlim_status refine(const mlim_field* field, const mlim_balls* balls,
+  const mlim_options* options, mlim_context* context, mlim_mesh* out, mlim_volume* volume)
+{
   mlim_options complete = *options;
   mlim_status status = mlim_options_complete(field, context, &complete);
   if (status == MLIM_OK)
@@ -336,6 +347,12 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
     status = read_and_measure(&b, out);
     outcome = status == MLIM_OK ? outcome : status;
   }
+  if (volume != NULL && (outcome == MLIM_OK || outcome == MLIM_VERTEX_LIMIT))
+  {
+    status = fill_volume(&b, out, b.refinement.complex.vertex_count, volume);
+    outcome = status == MLIM_OK ? outcome : status;
+  }
+  mlim_release(b.mesh_vertices);
   mlim_refine_free(&b.refinement);
   mlim_balls_free(&b.balls);
   mlim_edges_free(&b.edges);
@@ -347,4 +364,39 @@ mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
     mlim_mesh_free(out);
   }
   return outcome;
+}
+
+static mlim_status check_arguments(const mlim_field* field, const mlim_balls* balls,
+  const mlim_options* options, int has_results, mlim_context* context)
+{
+  return has_results && field != NULL && balls != NULL && options != NULL
+           ? MLIM_OK
+           : mlim_fail(context, MLIM_INVALID_ARGUMENT,
+               "The field, the balls, the options or the result are NULL.");
+}
+
+mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
+  const mlim_options* options, mlim_context* context, mlim_mesh* out)
+{
+  const mlim_status status = check_arguments(field, balls, options, out != NULL, context);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  *out = (mlim_mesh){ 0 };
+  return refine(field, balls, options, context, out, NULL);
+}
+
+mlim_status mlim_volume_refine(const mlim_field* field, const mlim_balls* balls,
+  const mlim_options* options, mlim_context* context, mlim_mesh* surface, mlim_volume* out)
+{
+  const mlim_status status =
+    check_arguments(field, balls, options, surface != NULL && out != NULL, context);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  *surface = (mlim_mesh){ 0 };
+  *out = (mlim_volume){ 0 };
+  return refine(field, balls, options, context, surface, out);
 }

@@ -24,8 +24,9 @@ typedef struct mlim_sheet
 typedef enum mlim_vertex_kind
 {
   MLIM_VERTEX_FAR,
-  MLIM_VERTEX_BALL,   /* a weighted point on a curve */
-  MLIM_VERTEX_SURFACE /* a point on a sheet */
+  MLIM_VERTEX_BALL,    /* a weighted point on a curve */
+  MLIM_VERTEX_SURFACE, /* a point on a sheet */
+  MLIM_VERTEX_INSIDE   /* of the volume alone */
 } mlim_vertex_kind;
 
 typedef struct mlim_vertex

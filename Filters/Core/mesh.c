@@ -221,13 +221,13 @@ static void read_all(reader* r, int32_t* vertex_of_ball)
   }
 }
 
-mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, mlim_mesh* out)
+mlim_status mlim_mesh_read_mapped(
+  const mlim_complex* complex, mlim_context* context, int32_t* vertex_of, mlim_mesh* out)
 {
   *out = (mlim_mesh){ 0 };
   mlim_status status = allocate_mesh(complex, context, count_triangles(complex), out);
-  int32_t* vertex_of = mlim_allocate(complex->vertex_count, sizeof *vertex_of);
   int32_t* vertex_of_ball = mlim_allocate(complex->balls->ball_count, sizeof *vertex_of_ball);
-  if (status == MLIM_OK && (vertex_of == NULL || vertex_of_ball == NULL))
+  if (status == MLIM_OK && vertex_of_ball == NULL)
   {
     status = mlim_fail_memory(context, "the mesh");
   }
@@ -237,12 +237,22 @@ mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, m
     read_all(&r, vertex_of_ball);
     measure_volumes(out, complex->oracle.field);
   }
-  mlim_release(vertex_of);
   mlim_release(vertex_of_ball);
   if (status != MLIM_OK)
   {
     mlim_mesh_free(out);
   }
+  return status;
+}
+
+mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, mlim_mesh* out)
+{
+  *out = (mlim_mesh){ 0 };
+  int32_t* vertex_of = mlim_allocate(complex->vertex_count, sizeof *vertex_of);
+  const mlim_status status = vertex_of != NULL
+                               ? mlim_mesh_read_mapped(complex, context, vertex_of, out)
+                               : mlim_fail_memory(context, "the mesh");
+  mlim_release(vertex_of);
   return status;
 }
 

@@ -3,7 +3,7 @@
    The core knows an axis-aligned grid whose point (i, j, k) lies at (i sx, j sy, k sz). Every
    length is in the unit of the spacing. The host maps products to world space.
 
-   The flow is one way:  grid -> field -> curves -> balls -> mesh.
+   The flow is one way:  grid -> field -> curves -> balls -> mesh (and volume).
 
    Every fallible function returns a status, fills `out` last, and on failure leaves `out` empty
    and one sentence in the context. Any product, also an empty one, may be passed to its _free. */
@@ -38,6 +38,7 @@ typedef enum mlim_stage
   MLIM_STAGE_BALLS,
   MLIM_STAGE_SURFACE,
   MLIM_STAGE_CERTIFICATE,
+  MLIM_STAGE_VOLUME,
   MLIM_STAGE_END
 } mlim_stage;
 
@@ -156,6 +157,13 @@ typedef enum mlim_oracle_mode
   MLIM_ORACLE_BISECTION /* the paper's: looks at midpoints only */
 } mlim_oracle_mode;
 
+/* A cell size of its own for one label. */
+typedef struct mlim_label_size
+{
+  int32_t id;  /* of a label of the field; the last entry for an id counts */
+  double size; /* > 0 */
+} mlim_label_size;
+
 /* Lengths in units of the grid. */
 typedef struct mlim_options
 {
@@ -173,6 +181,13 @@ typedef struct mlim_options
   mlim_oracle_mode oracle_mode;
   size_t vertex_limit;         /* largest number of vertices; > 0 */
   size_t min_component_voxels; /* smaller components need not be in the mesh; >= 1 */
+  /* Of the volume alone. */
+  double cell_size;                   /* bound on the circumradius of a cell; > 0 */
+  double cell_radius_edge_ratio;      /* bound on circumradius / shortest edge; >= 1; 0: 2 */
+  const mlim_label_size* label_sizes; /* borrowed; in place of cell_size; NULL: none */
+  size_t label_size_count;
+  int remove_slivers;  /* 0: the cells stay Delaunay */
+  int keep_background; /* 0: the volume is of the regions only; else it fills the box */
 } mlim_options;
 
 /* Lengths as multiples of the field's spacing (cube root of the voxel's volume): facet_size 2,
@@ -181,7 +196,7 @@ mlim_options mlim_options_default(const mlim_field* field);
 /* Fills in each length that is 0 (junction_merge_tolerance: below 0): facet_size = 2 spacings,
    facet_distance = facet_size / 8, edge_size = facet_size, crossing_tolerance = 1e-6,
    junction_merge_tolerance = 0.25 spacings, smallest_distance = facet_size / 8 but at most 0.5
-   spacings. Then checks every option. */
+   spacings, cell_size = 2 facet_size. Then checks every option. */
 mlim_status mlim_options_complete(
   const mlim_field* field, mlim_context* context, mlim_options* options);
 
@@ -323,6 +338,46 @@ typedef struct mlim_mesh
 mlim_status mlim_mesh_refine(const mlim_field* field, const mlim_balls* balls,
   const mlim_options* options, mlim_context* context, mlim_mesh* out);
 void mlim_mesh_free(mlim_mesh* mesh);
+
+/* ---- volume -------------------------------------------------------------------------------- */
+
+typedef struct mlim_volume_report
+{
+  size_t insertion_count;         /* vertices that refinement added inside the regions */
+  size_t unresolved_size_count;   /* cells that stayed above their size: no place for a point */
+  size_t unresolved_ratio_count;  /* cells above the radius-edge ratio, without a ball vertex */
+  size_t unresolved_box_count;    /* places where the kept background does not reach the box */
+  size_t sliver_count;            /* after refinement: cells with a dihedral angle below 10 degrees
+                                     or above 170 */
+  size_t unresolved_sliver_count; /* of them left at the end */
+  size_t exchange_count;          /* steps that bettered a cell */
+  size_t added_vertex_count;      /* vertices that they added */
+  double min_dihedral_angle;      /* degrees */
+  double max_dihedral_angle;
+  double max_radius_edge_ratio; /* cells without a ball vertex */
+  double min_cell_volume;       /* of a cell */
+} mlim_volume_report;
+
+/* The regions filled with tetrahedra. The faces between two labels, or of one cell only, are exactly
+   the surface mesh's triangles. */
+typedef struct mlim_volume
+{
+  size_t vertex_count;
+  size_t surface_vertex_count; /* the first vertices are those of the surface, in its order */
+  double* vertices;            /* 3 each; every one is in a cell */
+  size_t cell_count;
+  int32_t* cells;       /* 4 each, positively oriented */
+  int32_t* cell_labels; /* label indices */
+  size_t label_count;
+  double* label_volumes; /* of each label's cells */
+  mlim_volume_report report;
+} mlim_volume;
+
+/* mlim_mesh_refine, and then the volume in the surface, which it does not change. On failure both
+   are empty. MLIM_VERTEX_LIMIT returns both. */
+mlim_status mlim_volume_refine(const mlim_field* field, const mlim_balls* balls,
+  const mlim_options* options, mlim_context* context, mlim_mesh* surface, mlim_volume* out);
+void mlim_volume_free(mlim_volume* volume);
 
 #ifdef __cplusplus
 }

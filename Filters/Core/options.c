@@ -9,6 +9,8 @@ static const double FACET_SIZE = 2;
 static const double FACET_DISTANCE_PART = 0.125; /* of facet_size: flat to about 1 in 8 */
 static const double CROSSING_TOLERANCE = 1e-6;
 static const double JUNCTION_MERGE_TOLERANCE = 0.25;
+static const double CELL_SIZE = 2; /* of facet_size */
+static const double CELL_RADIUS_EDGE_RATIO = 2;
 static const double SMALLEST_PART =
   0.125; /* of facet_size: a finer spot costs a fan of triangles */
 static const double LARGEST_SMALLEST = 0.5; /* what the voxels separate is not given up */
@@ -21,7 +23,8 @@ mlim_options mlim_options_default(const mlim_field* field)
     .volume_tolerance = 0.02,
     .oracle_mode = MLIM_ORACLE_EXACT,
     .vertex_limit = 20000000,
-    .min_component_voxels = 30 };
+    .min_component_voxels = 30,
+    .remove_slivers = 1 };
   (void)mlim_options_complete(field, NULL, &options);
   return options;
 }
@@ -62,6 +65,7 @@ static mlim_status check_options(mlim_context* context, const mlim_options* o)
     { "CrossingTolerance", o->crossing_tolerance, 0 },
     { "JunctionMergeTolerance", o->junction_merge_tolerance, 1 },
     { "SmallestDistance", o->smallest_distance, 0 },
+    { "CellSize", o->cell_size, 0 },
   };
   mlim_status status = MLIM_OK;
   for (size_t k = 0; k < sizeof lengths / sizeof *lengths && status == MLIM_OK; ++k)
@@ -81,6 +85,19 @@ static mlim_status check_options(mlim_context* context, const mlim_options* o)
   if (status == MLIM_OK)
   {
     status = check_range(context, "VolumeTolerance", o->volume_tolerance, 0, 0.999);
+  }
+  if (status == MLIM_OK)
+  {
+    /* The same for cells: below 2 refinement need not end before the floor. */
+    status = check_range(context, "CellRadiusEdgeRatio", o->cell_radius_edge_ratio, 1, 1e6);
+  }
+  if (status == MLIM_OK && o->label_size_count > 0 && o->label_sizes == NULL)
+  {
+    status = mlim_fail(context, MLIM_INVALID_ARGUMENT, "The cell sizes of labels are NULL.");
+  }
+  for (size_t k = 0; k < o->label_size_count && status == MLIM_OK; ++k)
+  {
+    status = check_length(context, "The cell size of a label", o->label_sizes[k].size, 0);
   }
   if (status == MLIM_OK && (o->vertex_limit < 1 || o->vertex_limit > 1000000000))
   {
@@ -126,5 +143,8 @@ mlim_status mlim_options_complete(
   }
   options->smallest_distance = or_default(options->smallest_distance,
     mlim_min(SMALLEST_PART * options->facet_size, LARGEST_SMALLEST * unit));
+  options->cell_radius_edge_ratio =
+    or_default(options->cell_radius_edge_ratio, CELL_RADIUS_EDGE_RATIO);
+  options->cell_size = or_default(options->cell_size, CELL_SIZE * options->facet_size);
   return check_options(context, options);
 }

@@ -93,18 +93,24 @@ uint64_t mlim_queue_place(const mlim_queue* queue, const double point[3])
   return place;
 }
 
-int mlim_queue_push(mlim_queue* queue, int bin, const mlim_complex* complex, int32_t record)
+int mlim_queue_push_at(
+  mlim_queue* queue, int bin, const double point[3], int32_t record, uint32_t generation)
 {
   mlim_queue_bin* b = &queue->bins[bin];
   if (mlim_reserve(&b->entries, &b->capacity, b->count + 1, sizeof *b->entries))
   {
     return 1;
   }
-  b->entries[b->count++] =
-    (mlim_queue_entry){ .place = mlim_queue_place(queue, complex->facets[record].crossing),
-      .record = record,
-      .generation = complex->facets[record].generation };
+  b->entries[b->count++] = (mlim_queue_entry){
+    .place = mlim_queue_place(queue, point), .record = record, .generation = generation
+  };
   return 0;
+}
+
+int mlim_queue_push(mlim_queue* queue, int bin, const mlim_complex* complex, int32_t record)
+{
+  const mlim_facet* facet = &complex->facets[record];
+  return mlim_queue_push_at(queue, bin, facet->crossing, record, facet->generation);
 }
 
 static int compare_entries(const void* a, const void* b)

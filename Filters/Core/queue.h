@@ -42,6 +42,10 @@ mlim_badness mlim_queue_badness_of(int bin);
 /* Returns 1 when out of memory. */
 int mlim_queue_push(mlim_queue* queue, int bin, const mlim_complex* complex, int32_t record);
 
+/* The same for a thing at `point` whose record and generation the caller keeps. */
+int mlim_queue_push_at(
+  mlim_queue* queue, int bin, const double point[3], int32_t record, uint32_t generation);
+
 /* Takes the worst bin that has entries into queue->batch, sorted; -1: all are empty. */
 int mlim_queue_next(mlim_queue* queue);
 

@@ -39,6 +39,8 @@ const char* mlim_stage_text(mlim_stage stage)
       return "Refining the interface";
     case MLIM_STAGE_CERTIFICATE:
       return "Checking the mesh";
+    case MLIM_STAGE_VOLUME:
+      return "Filling the regions";
     case MLIM_STAGE_END:
       break;
   }

@@ -68,6 +68,7 @@ typedef struct run
   mlim_curves curves;
   mlim_balls balls;
   mlim_mesh mesh;
+  mlim_volume volume; /* of run_volume */
 } run;
 
 /* Lengths from the data; facets of one spacing, so that small shapes are rendered to a percent. */
@@ -80,11 +81,12 @@ static inline mlim_options run_options(double unit)
     .volume_tolerance = 0.02,
     .oracle_mode = MLIM_ORACLE_EXACT,
     .vertex_limit = 100000,
-    .min_component_voxels = 1 };
+    .min_component_voxels = 1,
+    .remove_slivers = 1 };
 }
 
-/* Field, curves, balls, mesh; stops at the first that is not MLIM_OK. */
-static inline mlim_status run_grid(
+/* Field, curves, balls; stops at the first that is not MLIM_OK. */
+static inline mlim_status run_cover(
   const mlim_grid* grid, const mlim_options* options, mlim_context* context, run* out)
 {
   *out = (run){ .options = *options };
@@ -101,15 +103,32 @@ static inline mlim_status run_grid(
   {
     status = mlim_balls_cover(&out->curves, &out->options, context, &out->balls);
   }
-  if (status == MLIM_OK)
-  {
-    status = mlim_mesh_refine(out->field, &out->balls, &out->options, context, &out->mesh);
-  }
   return status;
+}
+
+/* The same, and the mesh. */
+static inline mlim_status run_grid(
+  const mlim_grid* grid, const mlim_options* options, mlim_context* context, run* out)
+{
+  const mlim_status status = run_cover(grid, options, context, out);
+  return status == MLIM_OK
+           ? mlim_mesh_refine(out->field, &out->balls, &out->options, context, &out->mesh)
+           : status;
+}
+
+/* The same, and the volume. */
+static inline mlim_status run_volume(
+  const mlim_grid* grid, const mlim_options* options, mlim_context* context, run* out)
+{
+  const mlim_status status = run_cover(grid, options, context, out);
+  return status == MLIM_OK ? mlim_volume_refine(out->field, &out->balls, &out->options, context,
+                               &out->mesh, &out->volume)
+                           : status;
 }
 
 static inline void run_free(run* r)
 {
+  mlim_volume_free(&r->volume);
   mlim_mesh_free(&r->mesh);
   mlim_balls_free(&r->balls);
   mlim_curves_free(&r->curves);
@@ -126,8 +145,10 @@ static inline int run_is_empty_from(const run* r, mlim_stage stage)
                         r->balls.sets.offsets != NULL || r->balls.ball_count > 0;
   const int has_mesh = r->mesh.vertices != NULL || r->mesh.triangles != NULL ||
                        r->mesh.volumes != NULL || r->mesh.triangle_count > 0;
+  const int has_volume =
+    r->volume.vertices != NULL || r->volume.cells != NULL || r->volume.cell_count > 0;
   return !(stage <= MLIM_STAGE_FIELD && has_field) && !(stage <= MLIM_STAGE_CURVES && has_curves) &&
-         !(stage <= MLIM_STAGE_BALLS && has_balls) && !has_mesh;
+         !(stage <= MLIM_STAGE_BALLS && has_balls) && !has_mesh && !has_volume;
 }
 
 /* ---- the functions ---- */

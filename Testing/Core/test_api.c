@@ -71,6 +71,8 @@ static void test_ranges(const mlim_field* field)
     { "FacetRadiusEdgeRatio", offsetof(mlim_options, facet_radius_edge_ratio), 0.6, 0.5999999,
       INF },
     { "VolumeTolerance", offsetof(mlim_options, volume_tolerance), 0, BELOW_ZERO, 1 },
+    { "CellSize", offsetof(mlim_options, cell_size), 1e-300, BELOW_ZERO, INF },
+    { "CellRadiusEdgeRatio", offsetof(mlim_options, cell_radius_edge_ratio), 1, 0.9999999, INF },
     { "BallRadiusScale", offsetof(mlim_options, ball_radius_scale), 1, 0, 1.0000001 },
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)

@@ -31,7 +31,7 @@ static host run_host(const image* im, size_t stop_at)
   mlim_context context = { .progress = progress, .user = &h };
   const mlim_options options = run_options(1);
   run r;
-  const mlim_status status = run_grid(&im->grid, &options, &context, &r);
+  const mlim_status status = run_volume(&im->grid, &options, &context, &r);
   if (stop_at == 0)
   {
     CHECK(status == MLIM_OK);
@@ -40,7 +40,7 @@ static host run_host(const image* im, size_t stop_at)
   {
     CHECK(status == MLIM_CANCELLED);
     CHECK(context.message[0] != '\0');
-    const mlim_stage stage = h.stage == MLIM_STAGE_CERTIFICATE ? MLIM_STAGE_SURFACE : h.stage;
+    const mlim_stage stage = h.stage >= MLIM_STAGE_CERTIFICATE ? MLIM_STAGE_SURFACE : h.stage;
     CHECK(run_is_empty_from(&r, stage));
   }
   CHECK_COUNT(h.bad, 0);

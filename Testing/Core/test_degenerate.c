@@ -1,6 +1,7 @@
 /* Input that is nowhere in general position, or no input at all: it ends, within a vertex limit, in
    a labelled partition or in one sentence that says what is wrong. */
 #include "audit.h"
+#include "audit_volume.h"
 #include "random_field.h"
 #include "shapes.h"
 
@@ -19,7 +20,7 @@ static void check_run(const mlim_grid* grid, double facet_size, expectation expe
   options.vertex_limit = LIMIT;
   mlim_context context = { 0 };
   run r;
-  const mlim_status status = run_grid(grid, &options, &context, &r);
+  const mlim_status status = run_volume(grid, &options, &context, &r);
   CHECK(status == MLIM_OK || (status == MLIM_VERTEX_LIMIT && expected == EXPECT_PARTITION));
   if (status == MLIM_OK || status == MLIM_VERTEX_LIMIT)
   {
@@ -27,11 +28,13 @@ static void check_run(const mlim_grid* grid, double facet_size, expectation expe
     if (expected == EXPECT_MESH)
     {
       audit_mesh(r.field, &r.balls, &r.options, &r.mesh);
+      audit_volume_of(r.field, &r.mesh, &r.volume, 0);
       CHECK_COUNT(r.mesh.certificate.lost_component_count, 0);
     }
     else
     {
       audit_partition(r.field, &r.mesh);
+      audit_volume_of(r.field, &r.mesh, &r.volume, 0);
     }
   }
   else

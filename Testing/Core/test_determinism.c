@@ -58,9 +58,18 @@ static uint64_t hash_mesh(uint64_t h, const mlim_mesh* m)
   return hash_bytes(h, &m->certificate, sizeof m->certificate);
 }
 
+static uint64_t hash_volume(uint64_t h, const mlim_volume* v)
+{
+  h = hash_bytes(h, v->vertices, 3 * v->vertex_count * sizeof *v->vertices);
+  h = hash_bytes(h, v->cells, 4 * v->cell_count * sizeof *v->cells);
+  h = hash_bytes(h, v->cell_labels, v->cell_count * sizeof *v->cell_labels);
+  h = hash_bytes(h, v->label_volumes, v->label_count * sizeof *v->label_volumes);
+  return hash_bytes(h, &v->report, sizeof v->report);
+}
+
 typedef struct digest
 {
-  uint64_t curves, balls, mesh;
+  uint64_t curves, balls, mesh, volume;
 } digest;
 
 static digest make(int kind, mlim_context* context)
@@ -69,14 +78,16 @@ static digest make(int kind, mlim_context* context)
   const mlim_options options = run_options(1);
   image* im = shape_sample(&s);
   run r;
-  digest d = { 14695981039346656037u, 14695981039346656037u, 14695981039346656037u };
-  const mlim_status status = run_grid(&im->grid, &options, context, &r);
+  digest d = { 14695981039346656037u, 14695981039346656037u, 14695981039346656037u,
+    14695981039346656037u };
+  const mlim_status status = run_volume(&im->grid, &options, context, &r);
   CHECK(status == MLIM_OK);
   if (status == MLIM_OK)
   {
     d.curves = hash_curves(d.curves, &r.curves);
     d.balls = hash_balls(d.balls, &r.balls);
     d.mesh = hash_mesh(d.mesh, &r.mesh);
+    d.volume = hash_volume(d.volume, &r.volume);
   }
   run_free(&r);
   image_free(im);
@@ -88,6 +99,7 @@ static void compare(const digest* a, const digest* b)
   CHECK(a->curves == b->curves);
   CHECK(a->balls == b->balls);
   CHECK(a->mesh == b->mesh);
+  CHECK(a->volume == b->volume);
 }
 
 /* ---- other orders of parallel work ---- */

@@ -62,9 +62,10 @@ static mlim_status run_failing(const image* im, size_t failing)
   run r;
   allocation_count = 0;
   failing_allocation = failing;
-  const mlim_status status = run_grid(&im->grid, &options, &context, &r);
+  const mlim_status status = run_volume(&im->grid, &options, &context, &r);
   failing_allocation = 0;
   CHECK(r.mesh.vertices == NULL || status == MLIM_OK);
+  CHECK(r.volume.vertices == NULL || status == MLIM_OK);
   if (status == MLIM_OUT_OF_MEMORY)
   {
     CHECK(strlen(context.message) > 10);

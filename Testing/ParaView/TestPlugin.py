@@ -88,6 +88,24 @@ class TestPlugin(unittest.TestCase):
         self.assertEqual(mesher.Port, 0)
         self.assertEqual(mesher.SMProxy.GetOutputPortName(0), "Surface")
 
+    def test_volume(self):
+        mesher = self.mesher(FacetSize=0.12)
+        self.assertEqual(mesher.SMProxy.GetOutputPortName(1), "Volume")
+        self.assertEqual(plugin.fetch(mesher, 1).GetNumberOfCells(), 0)
+        before = plugin.digest(plugin.fetch(mesher))
+        mesher.VolumeMesh = 1
+        volume = plugin.fetch(mesher, 1)
+        labels = plugin.values(volume, "Label")
+        self.assertEqual(set(labels.tolist()), set(range(1, REGIONS + 1)))
+        self.assertEqual(plugin.digest(plugin.fetch(mesher)), before, "the surface stays")
+        mesher.KeepBackground = 1
+        labels = plugin.values(plugin.fetch(mesher, 1), "Label")
+        self.assertIn(0, labels.tolist())
+        view = simple.CreateRenderView()
+        display = simple.Show(simple.OutputPort(mesher, 1), view)
+        self.assertEqual(tuple(display.ColorArrayName), ("CELLS", "Label"))
+        simple.Delete(view)
+
     def test_array_selection(self):
         mesher = self.mesher()
         names = list(mesher.PointArrays)

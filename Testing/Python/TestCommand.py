@@ -21,7 +21,11 @@ from vtkmodules.vtkIOImage import (
 )
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter, vtkStructuredPointsWriter
 from vtkmodules.vtkIOParallelXML import vtkXMLPImageDataWriter
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLPolyDataReader
+from vtkmodules.vtkIOXML import (
+    vtkXMLImageDataWriter,
+    vtkXMLPolyDataReader,
+    vtkXMLUnstructuredGridReader,
+)
 
 import mlim
 from mlim import command
@@ -121,12 +125,26 @@ class TestCommand(unittest.TestCase):
         self.assertEqual(surface.GetFieldData().GetArray("VertexLimit").GetValue(0), 99999)
         self.assertEqual(surface.GetPoints().GetData().GetDataTypeAsString(), "float")
 
+    def test_volume(self):
+        words = ("--volume", self.path("out.vtu"), "--cell-size", "3", "--label-cell-sizes", "1=2")
+        code, out, error = self.run_command(
+            self.write_image(), "-o", self.path("out.vtp"), *words
+        )
+        self.assertEqual((code, error), (0, ""))
+        self.assertIn("Volume", out)
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(self.path("out.vtu"))
+        reader.Update()
+        labels = vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("Label"))
+        self.assertEqual(set(labels.tolist()), {1, 2, 3, 4})
+
     def test_every_option_of_mesh_is_reachable(self):
         known = set(vars(command._parser().parse_args(["in.vti", "-o", "out.vtp"])))
         renamed = {
             "image": "input",
             "cap_boundary": "no_caps",
             "output_curves": "no_curves",
+            "remove_slivers": "keep_slivers",
         }
         for name in inspect.signature(mlim.mesh).parameters:
             self.assertIn(renamed.get(name, name), known)

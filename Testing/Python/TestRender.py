@@ -12,7 +12,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
+import mlim
 from TestAudit import two_boxes_image, two_boxes_surface
+from TestPipeline import make_image
 
 SKIPPED = 77
 SCRIPT = Path(__file__).resolve().parents[2] / "ExampleData" / "render.py"
@@ -57,6 +59,28 @@ class TestRender(unittest.TestCase):
             both = render(folder)
             self.assertEqual(both.shape, (160, 320, 3))
             self.assertTrue(np.ptp(both[:, :160]) > 0.5 and np.ptp(both[:, 160:]) > 0.5)
+
+
+class TestRenderVolume(unittest.TestCase):
+    def test_cut(self):
+        """Both regions' colours show, and more of the ball than of nothing."""
+        with tempfile.TemporaryDirectory() as folder:
+            _, volume = mlim.mesh(make_image(), volume=True)
+            path, picture = Path(folder) / "volume.vtu", Path(folder) / "volume.png"
+            mlim.write_volume(volume, path)
+            script = SCRIPT.with_name("render_volume.py")
+            command = [sys.executable, str(script), str(picture), str(path), str(path)]
+            subprocess.run([*command, "--width", "400"], check=True, timeout=120)
+            reader = vtkPNGReader()
+            reader.SetFileName(str(picture))
+            reader.Update()
+            self.assertEqual(reader.GetOutput().GetDimensions()[:2], (400, 200))
+            pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3] / 255.0
+            bluish = (pixels[:, 2] > pixels[:, 0] + 0.1).mean()
+            orange = (pixels[:, 0] > pixels[:, 2] + 0.15).mean()
+            self.assertGreater(bluish, 0.03)
+            self.assertGreater(orange, 0.03)
+            self.assertGreater((pixels > 0.99).all(axis=1).mean(), 0.1)
 
 
 if __name__ == "__main__":

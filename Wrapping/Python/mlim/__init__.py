@@ -4,6 +4,8 @@
     surface = mlim.mesh("atlas.vti", facet_size=2.0)
     print(mlim.report(surface))
     mlim.write(surface, "atlas.vtp")
+    surface, volume = mlim.mesh("atlas.vti", facet_size=2.0, volume=True)
+    mlim.write_volume(volume, "atlas.msh")
 
 On the command line: python3 -m mlim atlas.vti -o atlas.vtp; --help says more.
 
@@ -12,6 +14,7 @@ vtkMultiLabelCurveExtractor and vtkMultiLabelCurveProtector. mlim.update runs on
 progress, Ctrl-C and exceptions.
 """
 
+from .exporting import write_volume
 from .meshing import balls, curves, mesh
 from .readers import read
 from .reporting import report
@@ -40,4 +43,5 @@ __all__ = [
     "vtkMultiLabelImageAlgorithm",
     "vtkMultiLabelInterfaceMesher",
     "write",
+    "write_volume",
 ]

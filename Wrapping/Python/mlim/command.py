@@ -9,6 +9,7 @@ import sys
 import warnings
 
 from . import meshing
+from .exporting import write_volume
 from .readers import known_endings, read
 from .reporting import report
 from .running import MeshError, MeshWarning
@@ -34,6 +35,8 @@ _OPTIONS = {
     "oracle_mode": "exact finds every crossing, bisection is the paper's",
     "tie_breaking": "on plateaus of integer data",
     "unseen_labels": "films and specks that no voxel sees: keep or drop them",
+    "cell_size": "of the volume: bound on the circumradius of tetrahedra; 0: twice the facet size",
+    "cell_radius_edge_ratio": "of the volume: bound on circumradius / shortest edge",
     "minimum_component_voxels": "smaller components need not be in the mesh",
     "vertex_limit": "refinement stops there",
 }
@@ -57,7 +60,7 @@ def main(words: list[str] | None = None) -> int:
                 check_name(name)
         with _warnings_as_lines():
             _run(options)
-    except (MeshError, OSError, ValueError, MemoryError) as error:
+    except (MeshError, OSError, ValueError, ImportError, MemoryError) as error:
         print(f"mlim: {str(error) or 'there is not enough memory'}", file=sys.stderr)
         return EXIT_FAILED
     except KeyboardInterrupt:
@@ -78,6 +81,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("input", metavar="IMAGE", help="one array for each label")
     parser.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="surface: .vtp .vtk .stl .ply .obj"
+    )
+    parser.add_argument(
+        "--volume", metavar="FILE", help="also fill the regions with tetrahedra: .vtu .msh .inp"
     )
     parser.add_argument("--curves", metavar="FILE", help="also write the curves")
     parser.add_argument("--balls", metavar="FILE", help="also write the protecting balls")
@@ -107,6 +113,19 @@ def _parser() -> argparse.ArgumentParser:
         "--no-curves", action="store_true", help="no curve edges and junctions in the surface"
     )
     group.add_argument("--single-precision", action="store_true", help="points as float")
+    group.add_argument(
+        "--label-cell-sizes",
+        nargs="+",
+        type=_label_size,
+        metavar="ID=NUMBER",
+        help="of the volume: cell sizes of single labels",
+    )
+    group.add_argument(
+        "--keep-slivers", action="store_true", help="of the volume: leave tetrahedra Delaunay"
+    )
+    group.add_argument(
+        "--keep-background", action="store_true", help="of the volume: with the background's"
+    )
     talk = parser.add_argument_group("messages")
     talk.add_argument("-q", "--quiet", action="store_true", help="no progress, no report")
     talk.add_argument("--progress", action="store_true", help="progress also without a terminal")
@@ -119,6 +138,11 @@ def _background(text: str) -> str | float:
         return float(text)
     except ValueError:
         return text
+
+
+def _label_size(text: str) -> tuple[int, float]:
+    label, _, size = text.partition("=")
+    return int(label), float(size)
 
 
 def _run(options: argparse.Namespace) -> None:
@@ -139,22 +163,31 @@ def _run(options: argparse.Namespace) -> None:
             ball_radius_scale=options.ball_radius_scale,
             progress=progress,
         )
-    surface = meshing.mesh(
+    made = meshing.mesh(
         image,
         **common,
         **chosen,
         cap_boundary=not options.no_caps,
         output_curves=not options.no_curves,
         single_precision=options.single_precision,
+        volume=options.volume is not None,
+        label_cell_sizes=dict(options.label_cell_sizes or ()),
+        remove_slivers=not options.keep_slivers,
+        keep_background=options.keep_background,
         balls=covered,
     )
+    surface, volume = made if options.volume else (made, None)
     write(surface, options.output)
+    if volume is not None:
+        write_volume(volume, options.volume)
     if options.curves:
         write(found, options.curves)
     if options.balls:
         write(covered, options.balls)
     if not options.quiet:
         print(report(surface))
+        if volume is not None:
+            print(report(volume))
 
 
 @contextlib.contextmanager

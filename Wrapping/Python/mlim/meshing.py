@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Iterable
+from typing import TYPE_CHECKING, Iterable, Mapping
 
 from vtkmodules.util.vtkConstants import VTK_DOUBLE, VTK_FLOAT
 
@@ -16,7 +16,7 @@ from .vtkMultiLabelInterfaceMesher import (
 )
 
 if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+    from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkUnstructuredGrid
 
     Image = vtkImageData | str | os.PathLike[str]
 
@@ -42,9 +42,15 @@ def mesh(
     minimum_component_voxels: int | None = None,
     vertex_limit: int | None = None,
     single_precision: bool = False,
+    volume: bool = False,
+    cell_size: float = 0.0,
+    label_cell_sizes: Mapping[int, float] | None = None,
+    cell_radius_edge_ratio: float = 2.0,
+    remove_slivers: bool = True,
+    keep_background: bool = False,
     balls: vtkPolyData | None = None,
     progress: bool | Progress | None = None,
-) -> vtkPolyData:
+) -> vtkPolyData | tuple[vtkPolyData, vtkUnstructuredGrid]:
     """The interface surface of a multi-label image, as vtkMultiLabelInterfaceMesher makes it.
 
     image: a vtkImageData, or the path of a file that mlim.read knows.
@@ -57,6 +63,8 @@ def mesh(
     oracle_mode: "exact" or "bisection". tie_breaking: "smooth" or "lowest_index".
     unseen_labels: "keep" or "drop".
     output_curves: False for vtkSurfaceNetsAtlas, which cannot use a surface with curves.
+    volume: True: the result is a pair, the surface and the regions filled with tetrahedra; the
+        next five options are the volume's. label_cell_sizes: cell sizes of single labels, by id.
     balls: output of vtkMultiLabelCurveProtector for this image; None: made here.
     progress: True or False: a line on sys.stderr or none; None: a line if that is a terminal; a
         function: called with the fraction done and the stage's name, and stops the run by
@@ -87,8 +95,18 @@ def mesh(
         mesher.SetVertexLimit(vertex_limit)
     if single_precision:
         mesher.SetOutputPointsPrecision(mesher.SINGLE_PRECISION)
+    mesher.SetVolumeMesh(volume)
+    mesher.SetCellSize(cell_size)
+    for label, size in (label_cell_sizes or {}).items():
+        if not size > 0.0:
+            raise ValueError(f"the cell size of label {label} is {size!r}; it has to be above 0")
+        mesher.SetLabelCellSize(label, size)
+    mesher.SetCellRadiusEdgeRatio(cell_radius_edge_ratio)
+    mesher.SetRemoveSlivers(remove_slivers)
+    mesher.SetKeepBackground(keep_background)
     update(mesher, progress)
-    return mesher.GetOutput()
+    surface = mesher.GetOutput()
+    return (surface, mesher.GetVolumeOutput()) if volume else surface
 
 
 def curves(

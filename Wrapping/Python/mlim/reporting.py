@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 
 _COUNTS = (
     ("vertices", "VertexCount"),
@@ -51,28 +51,57 @@ _TIMES = (
 )
 
 
-def report(surface: vtkPolyData) -> str:
-    """Counts, quality, certificate and times of a mesh that mlim.mesh or the filter made.
+_VOLUME_COUNTS = (
+    ("vertices", "VertexCount"),
+    ("of them on the surface", "SurfaceVertexCount"),
+    ("tetrahedra", "CellCount"),
+)
+_VOLUME_LENGTHS = (("cell size", "CellSize"),)
+_VOLUME_QUALITY = (
+    ("smallest dihedral angle, degrees", "MinDihedralAngle"),
+    ("largest", "MaxDihedralAngle"),
+    ("largest radius-edge ratio", "MaxRadiusEdgeRatio"),
+)
+_VOLUME_UNDONE = (
+    ("size", "UnresolvedSizeCount"),
+    ("ratio", "UnresolvedRatioCount"),
+    ("slivers", "UnresolvedSliverCount"),
+    ("places off the box", "UnresolvedBoxCount"),
+)
 
-    Several lines without a newline at the end. Raises ValueError for another polydata.
+
+def report(mesh: vtkPolyData | vtkUnstructuredGrid) -> str:
+    """Counts, quality, certificate and times of a surface that mlim.mesh or the filter made, or of a
+    volume.
+
+    Several lines without a newline at the end. Raises ValueError for other data.
     """
-    arrays = surface.GetFieldData()
+    arrays = mesh.GetFieldData()
 
     def value(name: str) -> float:
         array = arrays.GetArray(name)
         if array is None or array.GetNumberOfValues() < 1:
-            raise ValueError(f"this polydata has no field data array {name}: not a finished mesh")
+            raise ValueError(f"there is no field data array {name}: not a finished mesh")
         return array.GetVariantValue(0).ToDouble()
 
     def rows(entries, form: str) -> list[str]:
         return [f"  {title:<36}{value(name):{form}}" for title, name in entries]
 
-    undone = [f"{value(n):.0f} {t}" for t, n in _UNDONE if value(n) > 0]
-    if value("VertexLimitReached"):
-        undone.append("stopped at the vertex limit")
+    def undone_of(entries) -> str:
+        undone = [f"{value(n):.0f} {t}" for t, n in entries if value(n) > 0]
+        if value("VertexLimitReached"):
+            undone.append("stopped at the vertex limit")
+        return ", ".join(undone) or "none"
+
+    if arrays.GetArray("CellCount") is not None:
+        lines = ["Volume", *rows(_VOLUME_COUNTS, "14,.0f"), *rows(_VOLUME_LENGTHS, "14.6g")]
+        lines += ["Quality", *rows(_VOLUME_QUALITY, "14.3f")]
+        lines += [f"  {'tetrahedra left undone':<36}{undone_of(_VOLUME_UNDONE):>14}"]
+        lines += ["Seconds", *rows((("volume", "TimeVolume"),), "14.2f")]
+        return "\n".join(lines)
     lines = ["Mesh", *rows(_COUNTS, "14,.0f"), *rows(_LENGTHS, "14.6g")]
     lines += ["Quality", *rows(_QUALITY, "14.3f")]
-    lines += [f"  {'triangles left undone':<36}{', '.join(undone) or 'none':>14}"]
+    lines += [f"  {'triangles left undone':<36}{undone_of(_UNDONE):>14}"]
     lines += ["Certificate"]
     lines += [_of("labels in the mesh", value, "LostLabelCount", "CertifiedLabelCount")]
     lines += [_of("components in the mesh", value, "LostComponentCount", "CertifiedComponentCount")]

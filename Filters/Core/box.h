@@ -1,0 +1,15 @@
+/* The box's own boundary where the background reaches it: corners, edges and faces get points, so
+   that the cells without far vertices fill the box. For volumes that keep the background. */
+#ifndef mlim_box_h
+#define mlim_box_h
+
+#include "complex.h"
+
+/* Points about `size` apart. *left receives the number of cells that still reach out of the box.
+   MLIM_VERTEX_LIMIT: stopped early, all is valid. */
+mlim_status mlim_box_fill(mlim_complex* complex, double size, mlim_context* context, size_t* left);
+
+/* Bits of the faces of the box on which a point lies. */
+unsigned mlim_box_faces(const mlim_complex* complex, const double point[3]);
+
+#endif

@@ -1,0 +1,126 @@
+#include "zone.h"
+
+#include "memory.h"
+#include "status.h"
+#include "vector.h"
+
+int mlim_zone_is_free(const mlim_complex* complex, const mlim_delaunay_zone* zone,
+  const double point[3], const mlim_zone_demand* demand)
+{
+  for (size_t k = 0; k < zone->count; ++k)
+  {
+    const mlim_cell* cell = &complex->cells[zone->cells[k]];
+    if (cell->label != demand->label)
+    {
+      return 0;
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      const mlim_vertex* v = &complex->vertices[cell->vertices[i]];
+      if (v->kind == MLIM_VERTEX_FAR
+            ? !demand->may_have_far
+            : mlim_distance_squared(v->point, point) - v->weight < demand->least_squared)
+      {
+        return 0;
+      }
+    }
+  }
+  return zone->count > 0;
+}
+
+/* Tells the cell beyond the facet opposite to vertex `index` of its new neighbour. */
+static void link_outer(mlim_complex* complex, int32_t id, int index)
+{
+  const mlim_cell* cell = &complex->cells[id];
+  mlim_cell* outer = &complex->cells[cell->neighbors[index]];
+  for (int j = 0; j < 4; ++j)
+  {
+    const int32_t v = outer->vertices[j];
+    if (v != cell->vertices[(index + 1) & 3] && v != cell->vertices[(index + 2) & 3] &&
+        v != cell->vertices[(index + 3) & 3])
+    {
+      outer->neighbors[j] = id;
+      return;
+    }
+  }
+}
+
+static int reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
+{
+  for (size_t k = 0; k < made->count; ++k)
+  {
+    const size_t needed = (size_t)made->cells[k].id + 1;
+    if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells))
+    {
+      return 1;
+    }
+    for (; complex->cell_count < needed; ++complex->cell_count)
+    {
+      complex->cells[complex->cell_count] = (mlim_cell){ .vertices = { -1, -1, -1, -1 } };
+    }
+  }
+  return 0;
+}
+
+static void take_cells(
+  mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex, int32_t label)
+{
+  for (size_t k = 0; k < made->count; ++k)
+  {
+    const mlim_delaunay_cell* m = &made->cells[k];
+    mlim_cell* cell = &complex->cells[m->id];
+    *cell = (mlim_cell){ .label = label };
+    mlim_copy(m->center, cell->center);
+    for (int i = 0; i < 4; ++i)
+    {
+      cell->vertices[i] = m->vertices[i];
+      cell->neighbors[i] = m->neighbors[i];
+      complex->vertices[m->vertices[i]].cell = m->id;
+    }
+  }
+  for (size_t k = 0; k < made->count; ++k)
+  {
+    const int32_t id = made->cells[k].id;
+    for (int i = 0; i < 4; ++i)
+    {
+      if (complex->cells[id].vertices[i] == vertex &&
+          complex->cells[id].neighbors[i] != MLIM_NO_CELL)
+      {
+        link_outer(complex, id, i);
+      }
+    }
+  }
+}
+
+mlim_status mlim_zone_fill(mlim_complex* complex, const mlim_delaunay_zone* zone,
+  const double point[3], int32_t label, mlim_context* context, mlim_delaunay_cells* made)
+{
+  if (complex->vertex_count >= complex->vertex_limit)
+  {
+    return mlim_fail(context, MLIM_VERTEX_LIMIT,
+      "The mesh has %zu vertices, the limit; what is still bad is counted.",
+      complex->vertex_limit - MLIM_FAR_VERTICES);
+  }
+  if (mlim_reserve(&complex->vertices, &complex->vertex_capacity, complex->vertex_count + 1,
+        sizeof *complex->vertices))
+  {
+    return mlim_fail_memory(context, "the triangulation");
+  }
+  for (size_t k = 0; k < zone->count; ++k)
+  {
+    complex->cells[zone->cells[k]].vertices[0] = -1;
+  }
+  const int32_t vertex = (int32_t)complex->vertex_count++;
+  complex->vertices[vertex] = (mlim_vertex){ .kind = MLIM_VERTEX_INSIDE, .ball = -1 };
+  mlim_copy(point, complex->vertices[vertex].point);
+  const mlim_status status = mlim_delaunay_fill(complex->delaunay, context, made);
+  if (status == MLIM_OK && reserve_cells(complex, made))
+  {
+    return mlim_fail_memory(context, "the triangulation");
+  }
+  if (status == MLIM_OK)
+  {
+    take_cells(complex, made, vertex, label);
+  }
+  return status;
+}
