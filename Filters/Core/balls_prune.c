@@ -2,7 +2,9 @@
 
 #include "label_sets.h"
 #include "memory.h"
+#include "point_grid.h"
 #include "status.h"
+#include "vector.h"
 
 #include <string.h>
 
@@ -150,4 +152,53 @@ mlim_status mlim_balls_prune(
   mlim_release(work.numbers);
   mlim_release(work.links);
   return status;
+}
+
+/* Of two that hold each other's centre, which equal ones at one place do, the first one stays. */
+static int is_held(const mlim_balls* balls, size_t ball, size_t by)
+{
+  const double d = mlim_distance_squared(balls->centers + 3 * ball, balls->centers + 3 * by);
+  const double difference =
+    balls->radii[by] * balls->radii[by] - balls->radii[ball] * balls->radii[ball];
+  return d < difference || (!(d > difference) && by < ball);
+}
+
+mlim_status mlim_balls_find_held(
+  const mlim_balls* balls, mlim_context* context, unsigned char* is_marked, size_t* count)
+{
+  mlim_point_grid grid = { 0 };
+  double largest = 0;
+  *count = 0;
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    is_marked[b] = 0;
+    largest = mlim_max(largest, balls->radii[b]);
+  }
+  if (balls->ball_count == 0)
+  {
+    return MLIM_OK;
+  }
+  if (mlim_point_grid_create(2 * largest, balls->ball_count, &grid) != MLIM_OK)
+  {
+    return mlim_fail_memory(context, "the protecting balls");
+  }
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    mlim_point_grid_add(&grid, balls->centers + 3 * b, (int32_t)b);
+  }
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    mlim_point_walk walk;
+    for (int32_t q = mlim_point_grid_first(&grid, balls->centers + 3 * b, largest, &walk); q >= 0;
+         q = mlim_point_grid_next(&grid, &walk))
+    {
+      if ((size_t)q != b && !is_marked[b] && is_held(balls, b, (size_t)q))
+      {
+        is_marked[b] = 1;
+        ++*count;
+      }
+    }
+  }
+  mlim_point_grid_free(&grid);
+  return MLIM_OK;
 }

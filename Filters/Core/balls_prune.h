@@ -9,4 +9,9 @@
 mlim_status mlim_balls_prune(
   const mlim_balls* balls, const unsigned char* is_marked, mlim_context* context, mlim_balls* out);
 
+/* Marks the balls whose centre is nearer in power to another one, and counts them: such a ball owns no
+   part of space round its centre, and any point next to it could hide it. */
+mlim_status mlim_balls_find_held(
+  const mlim_balls* balls, mlim_context* context, unsigned char* is_marked, size_t* count);
+
 #endif

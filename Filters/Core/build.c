@@ -80,7 +80,7 @@ static void take_balls(build* b, mlim_balls* balls)
 }
 
 /* Starts with all balls that do not hide each other. */
-static mlim_status start(build* b)
+static mlim_status start(build* b, const mlim_known* known)
 {
   enum
   {
@@ -92,8 +92,12 @@ static mlim_status start(build* b)
     unsigned char* is_hidden = mlim_allocate(b->used_balls->ball_count, 1);
     size_t count = 0;
     status = is_hidden == NULL ? mlim_fail_memory(b->context, "the protecting balls")
-                               : mlim_refine_start(&b->refinement, &b->oracle, b->used_balls,
-                                   b->options, b->context, is_hidden, &count);
+                               : mlim_balls_find_held(b->used_balls, b->context, is_hidden, &count);
+    if (status == MLIM_OK && count == 0)
+    {
+      status = mlim_refine_start(&b->refinement, &b->oracle, b->used_balls, known, b->options,
+        b->context, is_hidden, &count);
+    }
     mlim_balls pruned = { 0 };
     if (status == MLIM_OK && count > 0)
     {
@@ -111,15 +115,32 @@ static mlim_status start(build* b)
     "The protecting balls hide each other; no ball may hold the centre of another one.");
 }
 
-static mlim_status refine_from_balls(build* b)
+static mlim_status refine_from_balls(build* b, const mlim_known* known)
 {
-  mlim_status status = start(b);
+  mlim_status status = start(b, known);
   if (status == MLIM_OK)
   {
     status = seed(b);
   }
   return status == MLIM_OK ? mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context)
                            : status;
+}
+
+/* What the pass before has sampled away from the new contacts goes in again as it is. */
+static mlim_status cover_spots(build* b, size_t* count)
+{
+  mlim_balls balls;
+  mlim_known known;
+  mlim_status status = mlim_spots_cover(&b->refinement, b->used_balls, b->context, &balls, count);
+  if (status != MLIM_OK || *count == 0)
+  {
+    return status;
+  }
+  status = mlim_spots_keep(&b->refinement, &balls, b->context, &known);
+  take_balls(b, &balls);
+  status = status == MLIM_OK ? refine_from_balls(b, &known) : status;
+  mlim_known_free(&known);
+  return status;
 }
 
 /* Topology first, while the triangulation is small: what cannot be resolved is covered by contacts, and
@@ -130,17 +151,12 @@ static mlim_status refine_topology(build* b)
   {
     MAX_ROUNDS = 2 /* a third one finds a fifth of the first, and changes little */
   };
-  mlim_status status = refine_from_balls(b);
+  const mlim_known nothing = { 0 };
+  mlim_status status = refine_from_balls(b, &nothing);
   size_t count = 1;
   for (int round = 0; round < MAX_ROUNDS && status == MLIM_OK && count > 0; ++round)
   {
-    mlim_balls balls;
-    status = mlim_spots_cover(&b->refinement, b->used_balls, b->context, &balls, &count);
-    if (status == MLIM_OK && count > 0)
-    {
-      take_balls(b, &balls);
-      status = refine_from_balls(b);
-    }
+    status = cover_spots(b, &count);
   }
   return status;
 }

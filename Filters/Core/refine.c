@@ -17,92 +17,106 @@ enum
 
 /* ---- start ---- */
 
-typedef struct ordered_ball
+typedef struct ordered_vertex
 {
   uint64_t place;
-  int32_t ball;
-} ordered_ball;
+  int32_t vertex;
+} ordered_vertex;
 
-static int compare_balls(const void* a, const void* b)
+static int compare_vertices(const void* a, const void* b)
 {
-  const ordered_ball* x = (const ordered_ball*)a;
-  const ordered_ball* y = (const ordered_ball*)b;
+  const ordered_vertex* x = (const ordered_vertex*)a;
+  const ordered_vertex* y = (const ordered_vertex*)b;
   if (x->place != y->place)
   {
     return x->place < y->place ? -1 : 1;
   }
-  return (x->ball > y->ball) - (x->ball < y->ball);
+  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
 }
 
-/* Along the Morton curve, so that each ball is located from the one before in a few steps. */
+/* The order along the Morton curve, so that each vertex is located from the one before in a few steps. */
+static ordered_vertex* order_points(
+  const mlim_refinement* r, const double* points, size_t stride, size_t count)
+{
+  ordered_vertex* order = mlim_allocate(count, sizeof *order);
+  for (size_t v = 0; order != NULL && v < count; ++v)
+  {
+    order[v] = (ordered_vertex){ .place = mlim_queue_place(&r->queue, points + stride * v),
+      .vertex = (int32_t)v };
+  }
+  if (order != NULL && count > 1)
+  {
+    qsort(order, count, sizeof *order, compare_vertices);
+  }
+  return order;
+}
+
+static double expect_vertices(const mlim_refinement* r)
+{
+  const double* size = mlim_field_grid_of(r->complex.oracle.field)->size;
+  const double area = size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  return 1000 + area / (r->options->facet_size * r->options->facet_size);
+}
+
+/* *is_hidden: it has no room among the vertices that are there, or would take that of another. */
+static mlim_status insert_first(mlim_refinement* r, const mlim_vertex* vertex, size_t number,
+  mlim_context* context, int* is_hidden)
+{
+  double power;
+  mlim_status status =
+    mlim_complex_probe(&r->complex, vertex, MLIM_NO_CELL, MLIM_START_NEAR, context, &power);
+  *is_hidden = status == MLIM_OK && power < 0;
+  if (status == MLIM_OK && !*is_hidden)
+  {
+    status = mlim_complex_commit(&r->complex, context);
+  }
+  return status == MLIM_OK && number % LOOK_EVERY_BALLS == 0 ? mlim_refine_report(r, context)
+                                                             : status;
+}
+
 static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mlim_context* context,
   unsigned char* is_hidden, size_t* hidden_count)
 {
-  ordered_ball* order = mlim_allocate(balls->ball_count, sizeof *order);
-  if (order == NULL)
-  {
-    return mlim_fail_memory(context, "the protecting balls");
-  }
-  for (size_t b = 0; b < balls->ball_count; ++b)
-  {
-    order[b] = (ordered_ball){ .place = mlim_queue_place(&r->queue, balls->centers + 3 * b),
-      .ball = (int32_t)b };
-  }
-  qsort(order, balls->ball_count, sizeof *order, compare_balls);
-  mlim_status status = MLIM_OK;
+  ordered_vertex* order = order_points(r, balls->centers, 3, balls->ball_count);
+  mlim_status status = order == NULL ? mlim_fail_memory(context, "the protecting balls") : MLIM_OK;
   for (size_t k = 0; k < balls->ball_count && status == MLIM_OK; ++k)
   {
-    const int32_t b = order[k].ball;
+    const int32_t b = order[k].vertex;
     mlim_vertex vertex = {
       .kind = MLIM_VERTEX_BALL, .ball = b, .weight = balls->radii[b] * balls->radii[b]
     };
+    int hides;
     mlim_copy(balls->centers + 3 * (size_t)b, vertex.point);
-    double power;
-    status =
-      mlim_complex_probe(&r->complex, &vertex, MLIM_NO_CELL, MLIM_START_NEAR, context, &power);
-    if (status == MLIM_OK && power < 0)
+    status = insert_first(r, &vertex, k, context, &hides);
+    if (status == MLIM_OK && hides)
     {
       is_hidden[b] = 1;
       ++*hidden_count;
-    }
-    else if (status == MLIM_OK)
-    {
-      status = mlim_complex_commit(&r->complex, context);
-    }
-    if (status == MLIM_OK && k % LOOK_EVERY_BALLS == 0)
-    {
-      status = mlim_progress(context, MLIM_STAGE_SURFACE, 0);
     }
   }
   mlim_release(order);
   return status;
 }
 
-/* A ball whose centre is nearer in power to another one owns no part of space round it, and the next
-   point could hide it. The other one is a neighbour then: power cells are convex. */
-static void mark_held(const mlim_complex* complex, unsigned char* is_hidden, size_t* count)
+static mlim_status insert_known(mlim_refinement* r, const mlim_known* known, mlim_context* context)
 {
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  ordered_vertex* order = order_points(r, known->points, 3, known->count);
+  mlim_status status = order == NULL ? mlim_fail_memory(context, "the triangulation") : MLIM_OK;
+  for (size_t k = 0; k < known->count && status == MLIM_OK; ++k)
   {
-    const mlim_cell* cell = &complex->cells[c];
-    for (int pair = 0; pair < 16 && cell->vertices[0] >= 0; ++pair)
-    {
-      const mlim_vertex* held = &complex->vertices[cell->vertices[pair & 3]];
-      const mlim_vertex* by = &complex->vertices[cell->vertices[pair >> 2]];
-      if (held->kind == MLIM_VERTEX_BALL && by->kind == MLIM_VERTEX_BALL && held != by &&
-          !is_hidden[held->ball] && !is_hidden[by->ball] &&
-          mlim_distance_squared(held->point, by->point) - by->weight <= -held->weight)
-      {
-        is_hidden[held->ball] = 1;
-        ++*count;
-      }
-    }
+    const size_t v = (size_t)order[k].vertex;
+    mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = known->sheets[v] };
+    int is_hidden;
+    mlim_copy(known->points + 3 * v, vertex.point);
+    status = insert_first(r, &vertex, k, context, &is_hidden);
   }
+  mlim_release(order);
+  return status;
 }
 
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
-  const mlim_balls* balls, const mlim_options* options, mlim_context* context,
-  unsigned char* is_hidden, size_t* hidden_count)
+  const mlim_balls* balls, const mlim_known* known, const mlim_options* options,
+  mlim_context* context, unsigned char* is_hidden, size_t* hidden_count)
 {
   mlim_refinement* r = refinement;
   *r = (mlim_refinement){ .options = options };
@@ -117,12 +131,13 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   {
     memset(is_hidden, 0, balls->ball_count);
     *hidden_count = 0;
+    r->expected_vertices = expect_vertices(r);
     status = insert_balls(r, balls, context, is_hidden, hidden_count);
   }
   if (status == MLIM_OK && *hidden_count == 0)
   {
-    status = mlim_complex_record_all(&r->complex, context);
-    mark_held(&r->complex, is_hidden, hidden_count);
+    status = insert_known(r, known, context);
+    status = status == MLIM_OK ? mlim_complex_record_all(&r->complex, context) : status;
   }
   if (status != MLIM_OK)
   {
@@ -313,13 +328,6 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
 {
   mlim_refinement* r = refinement;
   r->goal = goal;
-  const mlim_field_grid* grid = mlim_field_grid_of(r->complex.oracle.field);
-  if (!(r->expected_vertices > 0))
-  {
-    const double area =
-      grid->size[0] * grid->size[1] + grid->size[1] * grid->size[2] + grid->size[2] * grid->size[0];
-    r->expected_vertices = 1000 + area / (r->options->facet_size * r->options->facet_size);
-  }
   mlim_status status = enqueue_all(r, context);
   /* Each round inserts at least one point or is the last, and the vertex limit bounds the points. */
   while (status == MLIM_OK)

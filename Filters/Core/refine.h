@@ -25,12 +25,20 @@ typedef struct mlim_refinement
   double progress;          /* last reported */
 } mlim_refinement;
 
-/* Inserts the balls, records the complex; the caller seeds it. Balls that lie inside others or hold
-   the centre of one are marked (one byte each) and counted; if there are any, they have to be taken
-   out and the start made again: nothing is recorded then. */
+/* Points on sheets that are known beforehand. */
+typedef struct mlim_known
+{
+  size_t count;
+  double* points; /* 3 each */
+  mlim_sheet* sheets;
+} mlim_known;
+
+/* Inserts the balls and then the known points, records the complex; the caller seeds it. Balls that lie
+   inside others or hold the centre of one are marked (one byte each) and counted; if there are any,
+   they have to be taken out and the start made again: nothing is recorded then. */
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
-  const mlim_balls* balls, const mlim_options* options, mlim_context* context,
-  unsigned char* is_hidden, size_t* hidden_count);
+  const mlim_balls* balls, const mlim_known* known, const mlim_options* options,
+  mlim_context* context, unsigned char* is_hidden, size_t* hidden_count);
 void mlim_refine_free(mlim_refinement* refinement);
 
 /* Refines until nothing that is bad by the goal can be mended. MLIM_VERTEX_LIMIT: stopped early,

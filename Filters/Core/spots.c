@@ -19,6 +19,10 @@ static const double LARGEST = 1.8;
 /* A contact misses the centres of others, and they its own, by this factor of the radius. */
 static const double APART = 1.05;
 
+/* Radii round a contact, and power distance to any ball in squared radii, within which no vertex stays. */
+static const double ANEW = 3;
+static const double OUTSIDE = 0.25;
+
 /* Where a facet crosses an interface. */
 typedef struct spot_point
 {
@@ -318,4 +322,65 @@ mlim_status mlim_spots_cover(const mlim_refinement* refinement, const mlim_balls
   }
   spotting_free(&s);
   return status;
+}
+
+void mlim_known_free(mlim_known* known)
+{
+  mlim_release(known->points);
+  mlim_release(known->sheets);
+  *known = (mlim_known){ 0 };
+}
+
+static int may_stay(
+  const mlim_balls* balls, const mlim_point_grid* grid, double reach, const mlim_vertex* vertex)
+{
+  mlim_point_walk walk;
+  for (int32_t b = mlim_point_grid_first(grid, vertex->point, reach, &walk); b >= 0;
+       b = mlim_point_grid_next(grid, &walk))
+  {
+    const double d = mlim_distance_squared(balls->centers + 3 * (size_t)b, vertex->point);
+    const double weight = balls->radii[b] * balls->radii[b];
+    const double factor = balls->ball_curves[b] == MLIM_CONTACT ? ANEW * ANEW : 1 + OUTSIDE;
+    if (d < factor * weight)
+    {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+mlim_status mlim_spots_keep(const mlim_refinement* refinement, const mlim_balls* balls,
+  mlim_context* context, mlim_known* out)
+{
+  const mlim_complex* complex = &refinement->complex;
+  *out = (mlim_known){ .points = mlim_allocate(3 * complex->vertex_count, sizeof *out->points),
+    .sheets = mlim_allocate(complex->vertex_count, sizeof *out->sheets) };
+  mlim_point_grid grid = { 0 };
+  double reach = 0;
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    const double factor = balls->ball_curves[b] == MLIM_CONTACT ? ANEW : 1 + OUTSIDE;
+    reach = fmax(reach, factor * balls->radii[b]);
+  }
+  if (out->points == NULL || out->sheets == NULL ||
+      mlim_point_grid_create(reach, balls->ball_count, &grid) != MLIM_OK)
+  {
+    mlim_known_free(out);
+    return mlim_fail_memory(context, "the triangulation");
+  }
+  for (size_t b = 0; b < balls->ball_count; ++b)
+  {
+    mlim_point_grid_add(&grid, balls->centers + 3 * b, (int32_t)b);
+  }
+  for (size_t v = 0; v < complex->vertex_count; ++v)
+  {
+    const mlim_vertex* vertex = &complex->vertices[v];
+    if (vertex->kind == MLIM_VERTEX_SURFACE && may_stay(balls, &grid, reach, vertex))
+    {
+      mlim_copy(vertex->point, out->points + 3 * out->count);
+      out->sheets[out->count++] = vertex->sheet;
+    }
+  }
+  mlim_point_grid_free(&grid);
+  return MLIM_OK;
 }

@@ -293,7 +293,7 @@ enum
 {
   DISK_COST = 40,
   SHAPE_COST = 26,
-  SIDE_COST = 20
+  SIDE_COST = 13
 };
 
 static long cost(tidier* t)
