@@ -3,6 +3,7 @@
 #include "box.h"
 #include "memory.h"
 #include "queue.h"
+#include "shape.h"
 #include "status.h"
 #include "vector.h"
 #include "zone.h"
@@ -69,33 +70,6 @@ int mlim_cells_is_inside(
   return 1;
 }
 
-/* Squared circumradius of the cell's points, whatever their weights. */
-static double circumradius_squared(const mlim_vertex* const v[4])
-{
-  double a[3];
-  double b[3];
-  double c[3];
-  mlim_subtract(v[1]->point, v[0]->point, a);
-  mlim_subtract(v[2]->point, v[0]->point, b);
-  mlim_subtract(v[3]->point, v[0]->point, c);
-  double bc[3];
-  double ca[3];
-  double ab[3];
-  mlim_cross(b, c, bc);
-  mlim_cross(c, a, ca);
-  mlim_cross(a, b, ab);
-  const double aa = mlim_dot(a, a);
-  const double bb = mlim_dot(b, b);
-  const double cc = mlim_dot(c, c);
-  double sum[3];
-  for (int k = 0; k < 3; ++k)
-  {
-    sum[k] = aa * bc[k] + bb * ca[k] + cc * ab[k];
-  }
-  const double volume = mlim_dot(a, bc);
-  return mlim_dot(sum, sum) / (4 * volume * volume);
-}
-
 static verdict judge(const cells* c, const mlim_cell* cell)
 {
   verdict out = { .badness = MLIM_BAD_NONE, .shortest_squared = INFINITY };
@@ -103,18 +77,19 @@ static verdict judge(const cells* c, const mlim_cell* cell)
   {
     return out;
   }
-  const mlim_vertex* v[4];
+  const double* points[4];
   for (int k = 0; k < 4; ++k)
   {
-    v[k] = &c->complex->vertices[cell->vertices[k]];
-    out.has_ball |= v[k]->kind == MLIM_VERTEX_BALL;
+    const mlim_vertex* v = &c->complex->vertices[cell->vertices[k]];
+    points[k] = v->point;
+    out.has_ball |= v->kind == MLIM_VERTEX_BALL;
     for (int j = 0; j < k; ++j)
     {
       out.shortest_squared =
-        mlim_min(out.shortest_squared, mlim_distance_squared(v[k]->point, v[j]->point));
+        mlim_min(out.shortest_squared, mlim_distance_squared(points[k], points[j]));
     }
   }
-  const double squared = circumradius_squared(v);
+  const double squared = mlim_shape_radius_squared(points); /* whatever the weights */
   const double size = c->sizes[cell->label];
   if (squared > size * size)
   {

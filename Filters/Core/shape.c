@@ -121,6 +121,11 @@ static double angle_between(const pieces* cell, int i, int j)
   return degrees * atan2(sqrt(mlim_dot(cross, cross)), -mlim_dot(a, b));
 }
 
+double mlim_shape_radius_squared(const double* const points[4])
+{
+  return take_apart(points).radius_squared;
+}
+
 void mlim_shape_center(const double* const points[4], double out[3])
 {
   const pieces cell = take_apart(points);

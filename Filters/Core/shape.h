@@ -24,6 +24,9 @@ typedef struct mlim_shape_figures
 
 mlim_shape_figures mlim_shape_measure(const double* const points[4]);
 
+/* Squared circumradius. */
+double mlim_shape_radius_squared(const double* const points[4]);
+
 /* Circumcentre. */
 void mlim_shape_center(const double* const points[4], double out[3]);
 

@@ -11,7 +11,7 @@
 enum
 {
   STRICT_PASSES = 8,
-  MAX_ROUNDS = 2,               /* after them: one ambitious pass and two modest ones each */
+  MAX_ROUNDS = 3,               /* after them: one ambitious pass and two modest ones each */
   PASSES_WITHOUT_INSERTION = 2, /* flips and moves alone mend most */
   REPORT_EVERY = 256,           /* cells mended between two looks at the host: some 10 ms */
   MAX_STEPS = 6                 /* on one cell, in one pass */
@@ -48,6 +48,7 @@ typedef struct remover
   size_t bad_count, bad_capacity;
   size_t vertex_limit;
   mlim_shape_bound bound; /* the first one */
+  const aim* part;        /* of it, in use; NULL: all */
   int pass;               /* below 256 */
   int may_insert;         /* vertices, in this pass */
   mlim_slivers_result result;
@@ -230,6 +231,11 @@ static size_t count_slivers(mlim_solid* solid)
 
 static void set_aim(remover* r, const aim* part)
 {
+  if (r->part == part)
+  {
+    return;
+  }
+  r->part = part;
   mlim_solid* solid = r->solid;
   solid->bound = (mlim_shape_bound){ .sine = part->sine * r->bound.sine,
     .radius_edge_ratio = part->radius_edge_ratio * r->bound.radius_edge_ratio };
@@ -283,7 +289,8 @@ static mlim_status run_passes(remover* r, double from, double to, mlim_context* 
     for (size_t k = 0; k < sizeof aims / sizeof *aims && status == MLIM_OK; ++k, ++r->pass)
     {
       set_aim(r, aims[k]);
-      r->may_insert = aims[k] != &AMBITIOUS;
+      /* The ambitious pass of every second round: new vertices shake more loose, but are many. */
+      r->may_insert = aims[k] != &AMBITIOUS || round % 2 == 1;
       status = run_pass(r, at, to, context);
       at = to;
     }

@@ -17,6 +17,16 @@ EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 # between its triangles inside a region, and the triangles' own angles.
 SHARP_WEDGE = 30.0
 SHARP_TRIANGLE = 15.0
+# And where it comes nearer to itself than this, in lengths of its edges there: a film so thin has flat
+# cells, however it is filled.
+NARROW_GAP = 0.4
+# A triangle's points whose distance from others stands for its own, as weights of its corners.
+SAMPLES = np.array(
+    [
+        (1, 1, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1), (8, 1, 1), (1, 8, 1), (1, 1, 8),
+    ],
+    float,
+)
 
 LIMITS = {
     "max_volume_error": 1e-9,
@@ -132,6 +142,32 @@ def sharp_cells(volume, surface, angles):
     return sharp[volume.cells].any(axis=1)
 
 
+def narrow_gap(surface, vertex, samples):
+    """Distance of a vertex to triangles that are not round it, in edge lengths there."""
+    is_round = (surface.triangles == vertex).any(axis=1)
+    ring = np.unique(surface.triangles[is_round])
+    point = surface.points[vertex]
+    lengths = np.linalg.norm(surface.points[ring[ring != vertex]] - point, axis=1)
+    others = samples[~np.isin(surface.triangles, ring).any(axis=1)].reshape(-1, 3)
+    if len(others) == 0 or len(lengths) == 0:
+        return np.inf
+    return np.linalg.norm(others - point, axis=1).min() / lengths.mean()
+
+
+def in_narrow_gap(volume, surface, rows):
+    """Which of the cells lie where the surface comes near itself. Slow: for a few cells."""
+    weights = SAMPLES / SAMPLES.sum(axis=1, keepdims=True)
+    samples = np.einsum("kc,tcx->tkx", weights, surface.points[surface.triangles])
+    gaps = {}
+    result = np.zeros(len(rows), bool)
+    for k, row in enumerate(rows):
+        for vertex in volume.cells[row][volume.cells[row] < len(surface.points)].tolist():
+            if vertex not in gaps:
+                gaps[vertex] = narrow_gap(surface, vertex, samples)
+            result[k] |= gaps[vertex] < NARROW_GAP
+    return result
+
+
 def edge_key(edges, count):
     edges = np.sort(edges, axis=1).astype(np.int64)
     return edges[:, 0] * count + edges[:, 1]
@@ -162,6 +198,8 @@ def audit_volume(image, surface_data, grid):
     is_ball[: len(types)] = types % 10 != 2
     near_ball = is_ball[volume.cells].any(axis=1)
     near_sharp = sharp_cells(volume, surface, angles)
+    suspects = np.flatnonzero(~near_sharp & ((angles.min(axis=1) < 10) | (ratios > 2) & ~near_ball))
+    near_sharp[suspects] |= in_narrow_gap(volume, surface, suspects)
     figures.update(
         cells=len(volume.cells),
         points=len(volume.points),
