@@ -4,8 +4,8 @@
     surface = mlim.mesh("atlas.vti", facet_size=2.0)
     print(mlim.report(surface))
 
-The filters are here as well, for pipelines: vtkMultiLabelInterfaceMesher,
-vtkMultiLabelCurveExtractor and vtkMultiLabelCurveProtector.
+The filters are here as well, for pipelines: vtkMultiLabelIndicators,
+vtkMultiLabelCurveExtractor, vtkMultiLabelCurveProtector and vtkMultiLabelInterfaceMesher.
 """
 
 from .meshing import MeshError, mesh
@@ -15,6 +15,7 @@ from .vtkMultiLabelInterfaceMesher import (
     vtkMultiLabelCurveExtractor,
     vtkMultiLabelCurveProtector,
     vtkMultiLabelImageAlgorithm,
+    vtkMultiLabelIndicators,
     vtkMultiLabelInterfaceMesher,
 )
 
@@ -26,5 +27,6 @@ __all__ = [
     "vtkMultiLabelCurveExtractor",
     "vtkMultiLabelCurveProtector",
     "vtkMultiLabelImageAlgorithm",
+    "vtkMultiLabelIndicators",
     "vtkMultiLabelInterfaceMesher",
 ]

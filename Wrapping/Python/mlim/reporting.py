@@ -41,6 +41,7 @@ _UNDONE = (
     ("ratio beside curves", "UnresolvedBallRatioCount"),
 )
 _TIMES = (
+    ("indicators", "TimeIndicators"),
     ("field", "TimeField"),
     ("curves", "TimeCurves"),
     ("balls", "TimeBalls"),
