@@ -10,6 +10,10 @@
 /* The largest constant for a label's volume, in the smallest spacing: the interfaces move by half. */
 static const double MOST_SHIFT = 0.25;
 
+/* The default, in spacings of each axis. At 1 gentle slopes show terraces one voxel high; at 2 more sheets
+   of two voxels break up. */
+static const double SIGMA = 1.5;
+
 /* A band this much longer than the voxel's diagonal keeps every label that wins somewhere near a cell
    above the floor at its corners. */
 static const double DIAGONALS = 1;
@@ -19,6 +23,7 @@ enum
   MAX_MORPHOLOGY = 8, /* grid points; so that a halo cannot become larger than some tiles */
   MAX_ITERATIONS = 64,
   THIN_REACH = 3, /* how far mlim_morphology_thin looks */
+  MAX_HALO = 64,  /* grid points; a tile with its halo has 25 times as many as without */
   BATCH = 8       /* tiles between two looks at the host: below a tenth of a second */
 };
 
@@ -88,7 +93,7 @@ static mlim_status plan_kernels(mlim_indicator_plan* plan, mlim_context* context
   for (int k = 0; k < 3; ++k)
   {
     const double h = plan->map->spacing[k];
-    const double sigma = options->gaussian_sigma == 0  ? 1
+    const double sigma = options->gaussian_sigma == 0  ? SIGMA
                          : options->gaussian_sigma > 0 ? options->gaussian_sigma / h
                                                        : 0;
     if (!(options->gaussian_sigma == options->gaussian_sigma) ||
@@ -127,6 +132,14 @@ static mlim_status make_plan(const mlim_label_map* map, const mlim_indicator_opt
     const int32_t filters = options->dilate_radius + (is_distance ? out->cost.radius[k] : 0) +
                             out->kernels[k].radius + options->diffusion_iterations;
     out->halo[k] = options->median_radius + (filters > THIN_REACH ? filters : THIN_REACH);
+    if (status == MLIM_OK && out->halo[k] > MAX_HALO)
+    {
+      status = mlim_fail(context, MLIM_INVALID_ARGUMENT,
+        "The filters together reach %d grid points along axis %d (distance_band %d, gaussian_sigma "
+        "%d); at most %d are allowed.",
+        (int)out->halo[k], k, is_distance ? (int)out->cost.radius[k] : 0,
+        (int)out->kernels[k].radius, (int)MAX_HALO);
+    }
   }
   return status;
 }

@@ -392,7 +392,8 @@ mlim_status mlim_indicators_settle(
   for (int round = 0; round <= rounds && status == MLIM_OK; ++round)
   {
     const double begin = from + (to - from) * round / (rounds + 1);
-    status = measure(&job, begin, begin + (to - from) / (rounds + 1), context);
+    const double end = from + (to - from) * (round + 1) / (rounds + 1);
+    status = measure(&job, begin, end, context);
     if (status == MLIM_OK && round < rounds)
     {
       correct(indicators, layers, voxels, most, shift);

@@ -189,8 +189,8 @@ typedef struct mlim_indicator_options
   /* Distances are cut off at this length, inside and outside; at least a voxel's diagonal, at most 60
      spacings along each axis. 0: 3 of the largest spacings. */
   double distance_band;
-  /* Of the Gaussian; at most 15 spacings along each axis. 0: along each axis its spacing; below 0: no
-     smoothing. */
+  /* Of the Gaussian; at most 15 spacings along each axis. 0: 1.5 spacings, along each axis its own;
+     below 0: no smoothing. */
   double gaussian_sigma;
   int32_t diffusion_iterations; /* of curvature anisotropic diffusion, 0 to 64; 0: off */
   double diffusion_time_step;   /* in squares of the smallest spacing; above 0, at most 0.125 */
