@@ -137,7 +137,7 @@ public:
   /**
    * Signed distances are smoothed by twice the Gaussian less the Gaussian of the Gaussian, whose
    * second moment is 0, so that curved boundaries stay where they are; and each label gets a constant,
-   * of at most a quarter of the smallest spacing, that makes the volume of its region what its
+   * of at most six tenths of the smallest spacing, that makes the volume of its region what its
    * voxels have. Default: on. Without effect on masks.
    */
   vtkSetMacro(PreserveVolume, bool);

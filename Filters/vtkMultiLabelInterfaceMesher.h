@@ -56,11 +56,12 @@
  *   `VertexLimitReached` (0 or 1).
  * - Quality: `MaxRadiusEdgeRatio` (triangles without a ball's vertex), `MaxBallRadiusEdgeRatio`
  *   (with one), `MeanRadiusEdgeRatio`, `MinDihedralAngle` and `MinAngle` in degrees.
- * - Seconds: `TimeField`, `TimeCurves`, `TimeBalls`, `TimeSurface`, `TimeCertificate`.
+ * - Seconds: `TimeIndicators` (of a label map), `TimeField`, `TimeCurves`, `TimeBalls`, `TimeSurface`, `TimeCertificate`.
  *
  * After an error or an abort the output is empty, with its arrays.
  *
- * @sa vtkMultiLabelCurveExtractor vtkMultiLabelCurveProtector vtkSurfaceNets3D
+ * @sa vtkMultiLabelIndicators vtkMultiLabelCurveExtractor vtkMultiLabelCurveProtector
+ * vtkSurfaceNets3D
  */
 #ifndef vtkMultiLabelInterfaceMesher_h
 #define vtkMultiLabelInterfaceMesher_h

@@ -11,7 +11,7 @@ enum
   SIDE = MLIM_BRICK + 1, /* points along a window: a brick and the first points of the next ones */
   WINDOW = SIDE * SIDE * SIDE,
   SAMPLES = 8, /* of a mixed cell: the middles of its eighths */
-  ROUNDS = 3   /* each takes the difference to about a fifth */
+  ROUNDS = 5   /* each takes the difference to about a fifth */
 };
 
 /* A sample stands for an eighth of a cell, in which the lead over the next label changes by about this

@@ -195,7 +195,7 @@ typedef struct mlim_indicator_options
   int32_t diffusion_iterations; /* of curvature anisotropic diffusion, 0 to 64; 0: off */
   double diffusion_time_step;   /* in squares of the smallest spacing; above 0, at most 0.125 */
   /* Not 0: distances are smoothed by a kernel without second moment, and each label gets a constant,
-     at most a quarter of the smallest spacing, that makes the volume of its region what its voxels have. */
+     at most six tenths of the smallest spacing, that makes the volume of its region what its voxels have. */
   int keeps_volume;
   /* Not 0: parts of one grid point's thickness, and labels that would be nowhere the largest, keep
      the lead over the others that they have before smoothing. */

@@ -46,7 +46,9 @@ def mesh(
     """The interface surface of a multi-label image, as vtkMultiLabelInterfaceMesher makes it.
 
     image: a vtkImageData, or the path of a file that mlim.read knows.
-    arrays: names of the arrays to use, one a label; None: all with one component.
+    arrays: names of the arrays to use, one a label; None: all with one component. One array of an
+        integer type alone is a label map, as long as `background` is None; its ids are kept, and 0
+        is the background. vtkMultiLabelIndicators makes maps into arrays with other settings.
     background: None: the array called "background", if there is one; another text: the array of
         that name; a number: one more label with this indicator everywhere (0 for signed
         distances); "complement": one more label with what the others leave of the largest sum
