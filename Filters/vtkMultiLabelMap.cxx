@@ -65,19 +65,19 @@ bool IsIntegerType(int type)
 }
 
 void LabelMap::Read(
-  const mlim_array& values, const int dimensions[3], const double spacing[3], Run& run)
+  const mlim_array& values, const int dimensions[3], const double pointSpacing[3], Run& run)
 {
   run.Begin(MLIM_STAGE_INDICATORS);
-  run.End(mlim_label_map_read(dimensions, spacing, &values, run.GetContext(), this));
+  run.End(mlim_label_map_read(dimensions, pointSpacing, &values, run.GetContext(), this));
 }
 
-void LabelMap::Select(const std::vector<int>& ids, int background, Run& run)
+void LabelMap::Select(const std::vector<int>& selected, int background, Run& run)
 {
-  if (ids.empty())
+  if (selected.empty())
   {
     return;
   }
-  std::vector<int32_t> kept(ids.begin(), ids.end());
+  std::vector<int32_t> kept(selected.begin(), selected.end());
   std::sort(kept.begin(), kept.end());
   for (int32_t id : kept)
   {

@@ -45,9 +45,10 @@ public:
   ~LabelMap() { mlim_label_map_free(this); }
 
   /** Throws Refusal or Cancelled. */
-  void Read(const mlim_array& values, const int dimensions[3], const double spacing[3], Run& run);
+  void Read(
+    const mlim_array& values, const int dimensions[3], const double pointSpacing[3], Run& run);
   /** Keeps these labels and the background; all others become background. None: all are kept. */
-  void Select(const std::vector<int>& ids, int background, Run& run);
+  void Select(const std::vector<int>& selected, int background, Run& run);
   /** Names from the field data arrays LabelIds and LabelNames, as far as they are there; others are
    * called background and label_<id>. */
   void ReadNames(vtkFieldData* arrays);

@@ -10,6 +10,7 @@ enum
 {
   SIDE = MLIM_BRICK + 1, /* points along a window: a brick and the first points of the next ones */
   WINDOW = SIDE * SIDE * SIDE,
+  PARTS = 4,   /* of a layer of bricks: what one thread works on */
   SAMPLES = 8, /* of a mixed cell: the middles of its eighths */
   ROUNDS = 5   /* each takes the difference to about a fifth */
 };
@@ -19,20 +20,20 @@ enum
    volumes change smoothly with the constants, also where an interface is parallel to the grid. */
 static const double NEAR_PART = 0.5;
 
-/* What one layer of bricks adds up; one of each for a label. */
-typedef struct layer_sums
+/* What one part of a layer of bricks adds up; one of each for a label. */
+typedef struct part_sums
 {
   double* volume; /* in voxels */
   double* near;   /* samples near the interface, in voxels */
   unsigned char* has;
   int has_failed;
-} layer_sums;
+} part_sums;
 
 typedef struct measure_job
 {
   const mlim_indicators* indicators;
   const float* shift; /* a label: the constant so far */
-  layer_sums* layers;
+  part_sums* parts;
 } measure_job;
 
 /* One brick's points, those of the next bricks at its far faces among them. */
@@ -152,7 +153,7 @@ static void sample_cell(const float* value, float out[SAMPLES])
   }
 }
 
-static void measure_cell(const measure_job* job, const window* w, size_t first, layer_sums* sums)
+static void measure_cell(const measure_job* job, const window* w, size_t first, part_sums* sums)
 {
   float best[SAMPLES];
   float second[SAMPLES];
@@ -196,7 +197,7 @@ static void measure_cell(const measure_job* job, const window* w, size_t first, 
   }
 }
 
-static void measure_window(const measure_job* job, const window* w, layer_sums* sums)
+static void measure_window(const measure_job* job, const window* w, part_sums* sums)
 {
   for (int32_t z = 0; z <= w->cells[2]; ++z)
   {
@@ -229,19 +230,20 @@ static void measure_window(const measure_job* job, const window* w, layer_sums* 
   }
 }
 
-static void layer_body(void* data, size_t begin, size_t end)
+static void part_body(void* data, size_t begin, size_t end)
 {
   const measure_job* job = (const measure_job*)data;
   const int32_t* bricks = job->indicators->bricks;
   window w = { 0 };
-  for (size_t z = begin; z < end; ++z)
+  for (size_t n = begin; n < end; ++n)
   {
-    layer_sums* sums = &job->layers[z];
-    for (int32_t y = 0; y < bricks[1]; ++y)
+    part_sums* sums = &job->parts[n];
+    const int32_t part = (int32_t)(n % PARTS);
+    for (int32_t y = bricks[1] * part / PARTS; y < bricks[1] * (part + 1) / PARTS; ++y)
     {
       for (int32_t x = 0; x < bricks[0] && !sums->has_failed; ++x)
       {
-        const int32_t brick[3] = { x, y, (int32_t)z };
+        const int32_t brick[3] = { x, y, (int32_t)(n / PARTS) };
         sums->has_failed |= !read_window(job, brick, &w);
         if (!sums->has_failed)
         {
@@ -254,51 +256,51 @@ static void layer_body(void* data, size_t begin, size_t end)
   mlim_release(w.values);
 }
 
-/* ---- all layers ---- */
+/* ---- all parts ---- */
 
-static void free_layers(layer_sums* layers, size_t count)
+static void free_parts(part_sums* parts, size_t count)
 {
-  for (size_t z = 0; layers != NULL && z < count; ++z)
+  for (size_t n = 0; parts != NULL && n < count; ++n)
   {
-    mlim_release(layers[z].volume);
-    mlim_release(layers[z].near);
-    mlim_release(layers[z].has);
+    mlim_release(parts[n].volume);
+    mlim_release(parts[n].near);
+    mlim_release(parts[n].has);
   }
-  mlim_release(layers);
+  mlim_release(parts);
 }
 
-static layer_sums* make_layers(size_t count, size_t labels)
+static part_sums* make_parts(size_t count, size_t labels)
 {
-  layer_sums* layers = mlim_allocate_zeroed(count, sizeof *layers);
-  int has_failed = layers == NULL;
-  for (size_t z = 0; z < count && !has_failed; ++z)
+  part_sums* parts = mlim_allocate_zeroed(count, sizeof *parts);
+  int has_failed = parts == NULL;
+  for (size_t n = 0; n < count && !has_failed; ++n)
   {
-    layers[z].volume = mlim_allocate_zeroed(labels, sizeof *layers[z].volume);
-    layers[z].near = mlim_allocate_zeroed(labels, sizeof *layers[z].near);
-    layers[z].has = mlim_allocate_zeroed(labels, 1);
-    has_failed = layers[z].volume == NULL || layers[z].near == NULL || layers[z].has == NULL;
+    parts[n].volume = mlim_allocate_zeroed(labels, sizeof *parts[n].volume);
+    parts[n].near = mlim_allocate_zeroed(labels, sizeof *parts[n].near);
+    parts[n].has = mlim_allocate_zeroed(labels, 1);
+    has_failed = parts[n].volume == NULL || parts[n].near == NULL || parts[n].has == NULL;
   }
   if (has_failed)
   {
-    free_layers(layers, count);
+    free_parts(parts, count);
     return NULL;
   }
-  return layers;
+  return parts;
 }
 
-/* The sums of all layers go into the first. */
+/* The sums of all parts go into the first. */
 static mlim_status measure(measure_job* job, double from, double to, mlim_context* context)
 {
-  const size_t layers = (size_t)job->indicators->bricks[2];
+  const size_t parts = PARTS * (size_t)job->indicators->bricks[2];
   const size_t labels = (size_t)job->indicators->label_count;
-  for (size_t z = 0; z < layers; ++z)
+  for (size_t n = 0; n < parts; ++n)
   {
-    memset(job->layers[z].volume, 0, labels * sizeof *job->layers[z].volume);
-    memset(job->layers[z].near, 0, labels * sizeof *job->layers[z].near);
-    memset(job->layers[z].has, 0, labels);
+    memset(job->parts[n].volume, 0, labels * sizeof *job->parts[n].volume);
+    memset(job->parts[n].near, 0, labels * sizeof *job->parts[n].near);
+    memset(job->parts[n].has, 0, labels);
   }
-  const mlim_status status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = layers,
-                                                            .body = layer_body,
+  const mlim_status status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = parts,
+                                                            .body = part_body,
                                                             .job = job,
                                                             .stage = MLIM_STAGE_INDICATORS,
                                                             .from = from,
@@ -307,16 +309,16 @@ static mlim_status measure(measure_job* job, double from, double to, mlim_contex
   {
     return status;
   }
-  layer_sums* all = &job->layers[0];
-  for (size_t z = 1; z < layers; ++z)
+  part_sums* all = &job->parts[0];
+  for (size_t n = 1; n < parts; ++n)
   {
     for (size_t l = 0; l < labels; ++l)
     {
-      all->volume[l] += job->layers[z].volume[l];
-      all->near[l] += job->layers[z].near[l];
-      all->has[l] |= job->layers[z].has[l];
+      all->volume[l] += job->parts[n].volume[l];
+      all->near[l] += job->parts[n].near[l];
+      all->has[l] |= job->parts[n].has[l];
     }
-    all->has_failed |= job->layers[z].has_failed;
+    all->has_failed |= job->parts[n].has_failed;
   }
   return all->has_failed ? mlim_fail_memory(context, "the volumes of the labels") : MLIM_OK;
 }
@@ -340,7 +342,7 @@ static void count_voxels(const mlim_indicators* indicators, double* voxels)
 
 /* A constant b changes the share of each sample near the interface by b / (2 width). The neighbours
    move the other way, so half of Newton's step is right. */
-static void correct(const mlim_indicators* indicators, const layer_sums* sums, const double* voxels,
+static void correct(const mlim_indicators* indicators, const part_sums* sums, const double* voxels,
   double most, float* shift)
 {
   const double width = NEAR_PART * (double)indicators->unit;
@@ -376,19 +378,19 @@ mlim_status mlim_indicators_settle(
   mlim_indicators* indicators, double most, double from, double to, mlim_context* context)
 {
   const size_t labels = (size_t)indicators->label_count;
-  const size_t count = (size_t)indicators->bricks[2];
+  const size_t count = PARTS * (size_t)indicators->bricks[2];
   const int rounds = most > 0 ? ROUNDS : 0;
   double* voxels = mlim_allocate_zeroed(labels, sizeof *voxels);
   float* shift = mlim_allocate_zeroed(labels, sizeof *shift);
-  layer_sums* layers = make_layers(count, labels);
+  part_sums* parts = make_parts(count, labels);
   mlim_status status = MLIM_OK;
-  if (voxels == NULL || shift == NULL || layers == NULL)
+  if (voxels == NULL || shift == NULL || parts == NULL)
   {
     status = mlim_fail_memory(context, "the volumes of the labels");
     goto done;
   }
   count_voxels(indicators, voxels);
-  measure_job job = { .indicators = indicators, .shift = shift, .layers = layers };
+  measure_job job = { .indicators = indicators, .shift = shift, .parts = parts };
   for (int round = 0; round <= rounds && status == MLIM_OK; ++round)
   {
     const double begin = from + (to - from) * round / (rounds + 1);
@@ -396,17 +398,17 @@ mlim_status mlim_indicators_settle(
     status = measure(&job, begin, end, context);
     if (status == MLIM_OK && round < rounds)
     {
-      correct(indicators, layers, voxels, most, shift);
+      correct(indicators, parts, voxels, most, shift);
     }
   }
   if (status == MLIM_OK)
   {
     add_shifts(indicators, shift);
-    memcpy(indicators->has, layers[0].has, labels);
+    memcpy(indicators->has, parts[0].has, labels);
   }
 done:
   mlim_release(voxels);
   mlim_release(shift);
-  free_layers(layers, count);
+  free_parts(parts, count);
   return status;
 }
