@@ -121,7 +121,7 @@ static void smooth_along(
 }
 
 void mlim_kernel_apply(
-  const mlim_kernel kernels[3], const int32_t size[3], float* values, float* scratch)
+  const mlim_kernel* kernels, const int32_t size[3], float* values, float* scratch)
 {
   const size_t n[3] = { (size_t)size[0], (size_t)size[1], (size_t)size[2] };
   for (size_t line = 0; line < n[1] * n[2]; ++line)

@@ -15,9 +15,9 @@ typedef struct mlim_kernel
    the fourth power of sigma / radius of curvature). 0: too wide. */
 int mlim_kernel_gaussian(double sigma, int is_level, mlim_kernel* out);
 
-/* Applies one kernel an axis; beyond the block its outermost values go on. The result is in `values`;
+/* Applies three kernels, one an axis; beyond the block its outermost values go on. The result is in `values`;
    `scratch` is as large. */
 void mlim_kernel_apply(
-  const mlim_kernel kernels[3], const int32_t size[3], float* values, float* scratch);
+  const mlim_kernel* kernels, const int32_t size[3], float* values, float* scratch);
 
 #endif
