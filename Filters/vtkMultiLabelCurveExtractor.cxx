@@ -38,10 +38,10 @@ int vtkMultiLabelCurveExtractor::RequestData(
   }
   auto extract = [&]()
   {
-    const Input input(image, this->GetChoice());
-    this->WarnOf(input);
-    Run run(this, { MLIM_STAGE_FIELD, MLIM_STAGE_CURVES });
+    Input input(image, this->GetChoice());
+    Run run(this, StagesFrom(input, { MLIM_STAGE_FIELD, MLIM_STAGE_CURVES }));
     const FieldPointer field = IndexField(input, run);
+    this->WarnOf(input);
     Setting setting = MakeSetting(field.get(), input);
     setting.Options = CurveOptions(field.get(), this->GetJunctionMergeTolerance(), run);
     ExtractCurves(field.get(), setting, run, out);

@@ -10,6 +10,13 @@
  * one label a component. Blanked points (cells) and everything outside the image are background.
  * Spacing, origin, direction matrix and an extent that does not start at 0 all count.
  *
+ * Label maps: one array of an integer type with one component, alone in the image or selected alone,
+ * is a label map if BackgroundMode is Array and BackgroundArrayName empty. Its indicators are made on
+ * the way, as vtkMultiLabelIndicators makes them with all its defaults and with the same result, but
+ * in memory that does not grow with the number of labels. Its ids are kept; 0 is the background.
+ * Whole numbers in floating point are one indicator function; vtkMultiLabelIndicators takes them as
+ * labels.
+ *
  * Ids: the background is 0, the other arrays are 1, 2, ... in their order, unless the image's field
  * data has `LabelIds` (one entry an array); `LabelNames` gives names in the same way.
  *

@@ -47,45 +47,6 @@ bool IsGhostArray(vtkFieldData* arrays, int index)
   return NameOfArray(arrays, index) == vtkDataSetAttributes::GhostArrayName();
 }
 
-// MLIM_SCALAR_END: a type that the core does not read.
-mlim_scalar ScalarType(int type)
-{
-  const bool isWide = sizeof(long) == 8;
-  switch (type)
-  {
-    case VTK_CHAR:
-      return CHAR_MIN < 0 ? MLIM_INT8 : MLIM_UINT8;
-    case VTK_SIGNED_CHAR:
-      return MLIM_INT8;
-    case VTK_UNSIGNED_CHAR:
-      return MLIM_UINT8;
-    case VTK_SHORT:
-      return MLIM_INT16;
-    case VTK_UNSIGNED_SHORT:
-      return MLIM_UINT16;
-    case VTK_INT:
-      return MLIM_INT32;
-    case VTK_UNSIGNED_INT:
-      return MLIM_UINT32;
-    case VTK_LONG:
-      return isWide ? MLIM_INT64 : MLIM_INT32;
-    case VTK_UNSIGNED_LONG:
-      return isWide ? MLIM_UINT64 : MLIM_UINT32;
-    case VTK_LONG_LONG:
-      return MLIM_INT64;
-    case VTK_UNSIGNED_LONG_LONG:
-      return MLIM_UINT64;
-    case VTK_ID_TYPE:
-      return sizeof(vtkIdType) == 8 ? MLIM_INT64 : MLIM_INT32;
-    case VTK_FLOAT:
-      return MLIM_FLOAT32;
-    case VTK_DOUBLE:
-      return MLIM_FLOAT64;
-    default:
-      return MLIM_SCALAR_END;
-  }
-}
-
 // Names of enabled arrays; empty: none is enabled.
 std::vector<std::string> EnabledNames(vtkDataArraySelection* selection)
 {
@@ -149,20 +110,53 @@ Input::Input(vtkImageData* image, const Choice& choice)
                                         : !HasAny(points, enabled) && HasAny(cells, enabled);
   this->GridFrame = FrameOfImage(image, this->IsCellCentred);
   this->ReadArrays(image, choice);
-  this->ReadBackground(choice);
-  this->CheckIds();
+  if (!this->Map)
+  {
+    this->ReadBackground(choice);
+    this->CheckIds();
+    this->ShareArrays();
+  }
   this->ReadOutside(image);
   std::copy_n(this->GridFrame.Dimensions, 3, this->Grid.dims);
   std::copy_n(this->GridFrame.Spacing, 3, this->Grid.spacing);
+  this->Grid.is_outside = this->Outside.empty() ? nullptr : this->Outside.data();
+  this->Grid.tie_breaking = choice.TieBreaking;
+  this->Grid.unseen = choice.UnseenLabels;
+}
+
+void Input::ShareArrays()
+{
   for (size_t a = 0; a < this->Arrays.size(); ++a)
   {
     this->Arrays[a].name = this->Names[a].c_str();
   }
   this->Grid.array_count = this->Arrays.size();
   this->Grid.arrays = this->Arrays.data();
-  this->Grid.is_outside = this->Outside.empty() ? nullptr : this->Outside.data();
-  this->Grid.tie_breaking = choice.TieBreaking;
-  this->Grid.unseen = choice.UnseenLabels;
+}
+
+void Input::MakeIndicators(Run& run)
+{
+  const mlim_array values = this->Arrays.front();
+  this->Map->Read(values, this->GridFrame.Dimensions, this->GridFrame.Spacing, run);
+  const size_t background = this->Map->FindBackground(default_background_label);
+  this->Indicators = this->Map->MakeIndicators(mlim_indicator_options_default(), run);
+  this->Arrays.assign(this->Map->LabelCount(), mlim_array());
+  this->Names.clear();
+  for (size_t label = 0; label < this->Arrays.size(); ++label)
+  {
+    this->Arrays[label].id = this->Map->ids[label];
+    this->Names.push_back(this->Map->NameOf(label, background));
+  }
+  const std::string loss = this->Map->LossOf(this->Indicators.get(), background);
+  if (!loss.empty())
+  {
+    this->Warnings.push_back(loss);
+  }
+  this->Grid.indicators = this->Indicators.get();
+  this->Grid.background =
+    background < this->Arrays.size() ? MLIM_BACKGROUND_ARRAY : MLIM_BACKGROUND_NONE;
+  this->Grid.background_array = background;
+  this->ShareArrays();
 }
 
 std::string Input::NameOfLabel(int32_t label) const
@@ -262,6 +256,15 @@ void Input::ReadArrays(vtkImageData* image, const Choice& choice)
     this->ArrayNames.push_back(candidate.Name);
   }
   this->Names = this->ArrayNames;
+  const bool isAlone = used.size() == 1 && used.front().Values->GetNumberOfComponents() == 1;
+  if (isAlone && IsIntegerType(used.front().Values->GetDataType()) &&
+      choice.BackgroundMode == BackgroundArray && choice.BackgroundArrayName.empty())
+  {
+    this->Map.reset(new LabelMap);
+    this->Map->ReadNames(image->GetFieldData());
+    this->Arrays.front().name = this->Names.front().c_str();
+    return;
+  }
   this->ReadLabels(image, used, this->CandidateCount);
 }
 
@@ -328,10 +331,11 @@ void Input::ReadLabels(vtkImageData* image, std::vector<Candidate>& used, size_t
     if (idEntry >= 0)
     {
       const double id = ids->GetVariantValue(idEntry).ToDouble();
-      if (!(id >= 0.0 && id <= INT_MAX))
+      if (!(id >= INT_MIN && id <= INT_MAX))
       {
         throw Refusal("The field data array 'LabelIds' holds " + std::to_string(id) +
-                      "; ids from 0 to " + std::to_string(INT_MAX) + " are needed.");
+                      "; ids from " + std::to_string(INT_MIN) + " to " + std::to_string(INT_MAX) +
+                      " are needed.");
       }
       this->Arrays[a].id = static_cast<int32_t>(id);
       this->HasLabelIds = true;
@@ -391,8 +395,8 @@ void Input::ReadBackground(const Choice& choice)
     else if (count == 1)
     {
       this->Warnings.push_back("There is one array and no background, so the only region is the "
-                               "whole image. (A label map must be turned into one array for each "
-                               "label first.)");
+                               "whole image. (Labels in floating point go through "
+                               "vtkMultiLabelIndicators first.)");
     }
   }
   int32_t next = 1;

@@ -6,6 +6,7 @@
 #define vtkMultiLabelInput_h
 
 #include "vtkMultiLabelFrame.h"
+#include "vtkMultiLabelMap.h"
 
 #include "mlim.h"
 
@@ -48,6 +49,12 @@ public:
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
+  /** Whether the image is a label map: one integer array alone, with BackgroundMode Array and no
+   * BackgroundArrayName. Then MakeIndicators fills in what the grid lacks. */
+  bool IsLabelMap() const { return this->Map != nullptr; }
+  /** Throws Refusal or Cancelled; may add to the warnings. */
+  void MakeIndicators(Run& run);
+
   /** Borrows from this and from the image. */
   mlim_grid Grid = {};
   Frame GridFrame;
@@ -72,6 +79,7 @@ private:
   void ReadBackground(const Choice& choice);
   void CheckIds() const;
   void ReadOutside(vtkImageData* image);
+  void ShareArrays();
   mlim_array Borrow(const Candidate& candidate, vtkIdType count);
 
   bool IsCellCentred = false;
@@ -80,6 +88,8 @@ private:
   std::vector<mlim_array> Arrays;
   std::vector<std::string> ArrayNames;
   std::vector<std::string> Names; // of the labels: LabelNames, else ArrayNames
+  std::unique_ptr<LabelMap> Map;
+  IndicatorsPointer Indicators;
   std::vector<unsigned char> Outside;
   std::vector<vtkSmartPointer<vtkDataArray>> Copies;
 };

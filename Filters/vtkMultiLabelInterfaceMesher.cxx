@@ -221,18 +221,19 @@ int vtkMultiLabelInterfaceMesher::RequestData(
 void vtkMultiLabelInterfaceMesher::Mesh(
   vtkImageData* image, vtkPolyData* balls, vtkPolyData* out, vtkUnstructuredGrid* volumeOut)
 {
-  const Input input(image, this->GetChoice());
-  this->WarnOf(input);
-
-  Run run(this, balls ? std::initializer_list<mlim_stage>{ MLIM_STAGE_FIELD, MLIM_STAGE_SURFACE,
-                          MLIM_STAGE_CERTIFICATE }
-                      : std::initializer_list<mlim_stage>{ MLIM_STAGE_FIELD, MLIM_STAGE_CURVES,
-                          MLIM_STAGE_BALLS, MLIM_STAGE_SURFACE, MLIM_STAGE_CERTIFICATE });
+  Input input(image, this->GetChoice());
+  std::vector<mlim_stage> stages = { MLIM_STAGE_FIELD, MLIM_STAGE_SURFACE, MLIM_STAGE_CERTIFICATE };
+  if (!balls)
+  {
+    stages.insert(stages.begin() + 1, { MLIM_STAGE_CURVES, MLIM_STAGE_BALLS });
+  }
+  Run run(this, StagesFrom(input, stages));
   if (this->VolumeMesh)
   {
     run.Use(MLIM_STAGE_VOLUME);
   }
   const FieldPointer field = IndexField(input, run);
+  this->WarnOf(input);
   Setting setting = MakeSetting(field.get(), input);
   mlim_options options = mlim_options_default(field.get());
   options.facet_size = this->FacetSize;

@@ -62,8 +62,8 @@
  *   `VertexLimitReached` (0 or 1).
  * - Quality: `MaxRadiusEdgeRatio` (triangles without a ball's vertex), `MaxBallRadiusEdgeRatio`
  *   (with one), `MeanRadiusEdgeRatio`, `MinDihedralAngle` and `MinAngle` in degrees.
- * - Seconds: `TimeField`, `TimeCurves`, `TimeBalls`, `TimeSurface`, `TimeCertificate`,
- *   `TimeVolume`.
+ * - Seconds: `TimeIndicators` (of a label map), `TimeField`, `TimeCurves`, `TimeBalls`,
+ *   `TimeSurface`, `TimeCertificate`, `TimeVolume`.
  *
  * Port 1 out, with VolumeMesh on: vtkUnstructuredGrid in world space, the regions filled with
  * tetrahedra of positive volume. Regions that reach the box end at its faces. Two tetrahedra share
@@ -81,7 +81,8 @@
  *
  * After an error or an abort the output is empty, with its arrays.
  *
- * @sa vtkMultiLabelCurveExtractor vtkMultiLabelCurveProtector vtkSurfaceNets3D
+ * @sa vtkMultiLabelIndicators vtkMultiLabelCurveExtractor vtkMultiLabelCurveProtector
+ * vtkSurfaceNets3D
  */
 #ifndef vtkMultiLabelInterfaceMesher_h
 #define vtkMultiLabelInterfaceMesher_h

@@ -19,10 +19,10 @@ namespace
 
 // Shares of the stages in the time of a typical run; only the look of the progress bar depends on
 // them.
-const double stage_weights[MLIM_STAGE_END] = { 0.05, 0.1, 0.05, 0.7, 0.1, 1.0 };
+const double stage_weights[MLIM_STAGE_END] = { 0.15, 0.05, 0.1, 0.05, 0.7, 0.1, 1.0 };
 
-const char* const stage_arrays[MLIM_STAGE_END] = { "TimeField", "TimeCurves", "TimeBalls",
-  "TimeSurface", "TimeCertificate", "TimeVolume" };
+const char* const stage_arrays[MLIM_STAGE_END] = { "TimeIndicators", "TimeField", "TimeCurves",
+  "TimeBalls", "TimeSurface", "TimeCertificate", "TimeVolume" };
 
 // A progress event every 20 ms, or 1/200 of the way: a user interface reads its events in them, so
 // this is also the delay of an abort, and more would cost time.
@@ -31,7 +31,7 @@ const double event_step = 0.005;
 
 }
 
-Run::Run(vtkAlgorithm* algorithm, std::initializer_list<mlim_stage> stages) : Algorithm(algorithm)
+Run::Run(vtkAlgorithm* algorithm, const std::vector<mlim_stage>& stages) : Algorithm(algorithm)
 {
   this->Context.progress = &Run::Progress;
   this->Context.parallel_for = &Run::ParallelFor;

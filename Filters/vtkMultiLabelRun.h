@@ -13,9 +13,9 @@
 #include <array>
 #include <chrono>
 #include <exception>
-#include <initializer_list>
 #include <new>
 #include <stdexcept>
+#include <vector>
 
 class vtkFieldData;
 class vtkInformationVector;
@@ -38,7 +38,7 @@ class Cancelled : public std::exception
 class Run
 {
 public:
-  Run(vtkAlgorithm* algorithm, std::initializer_list<mlim_stage> stages);
+  Run(vtkAlgorithm* algorithm, const std::vector<mlim_stage>& stages);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
@@ -53,8 +53,9 @@ public:
    * is one. */
   void End(mlim_status status);
 
-  /** Arrays TimeField, TimeCurves, TimeBalls, TimeSurface, TimeCertificate and TimeVolume, in
-   * seconds. A stage that is not of this run keeps the time that came with the input, or gets 0. */
+  /** Arrays TimeIndicators, TimeField, TimeCurves, TimeBalls, TimeSurface, TimeCertificate and
+   * TimeVolume, in seconds. A stage that is not of this run keeps the time that came with the input,
+   * or gets 0. */
   void WriteTimes(vtkFieldData* out) const;
 
 private:

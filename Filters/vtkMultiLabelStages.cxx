@@ -34,8 +34,21 @@ struct Balls : mlim_balls
 
 }
 
-FieldPointer IndexField(const Input& input, Run& run)
+std::vector<mlim_stage> StagesFrom(const Input& input, std::vector<mlim_stage> stages)
 {
+  if (input.IsLabelMap())
+  {
+    stages.insert(stages.begin(), MLIM_STAGE_INDICATORS);
+  }
+  return stages;
+}
+
+FieldPointer IndexField(Input& input, Run& run)
+{
+  if (input.IsLabelMap())
+  {
+    input.MakeIndicators(run);
+  }
   mlim_field* field = nullptr;
   run.Begin(MLIM_STAGE_FIELD);
   const mlim_status status = mlim_field_create(&input.Grid, run.GetContext(), &field);

@@ -11,6 +11,7 @@
 #include "mlim.h"
 
 #include <memory>
+#include <vector>
 
 class vtkPolyData;
 
@@ -29,7 +30,11 @@ using FieldPointer = std::unique_ptr<mlim_field, FieldDeleter>;
 /** Of the property BallRadiusScale. */
 const double default_ball_radius_scale = 1.0;
 
-FieldPointer IndexField(const Input& input, Run& run);
+/** Makes the indicators of a label map first. */
+FieldPointer IndexField(Input& input, Run& run);
+
+/** The stages of a run, those of the input's own among them. */
+std::vector<mlim_stage> StagesFrom(const Input& input, std::vector<mlim_stage> stages);
 
 /** The core's defaults with every length filled in, and the tolerance if it is not 0. */
 mlim_options CurveOptions(const mlim_field* field, double junctionMergeTolerance, Run& run);

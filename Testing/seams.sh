@@ -19,7 +19,8 @@ fail() {
 order='
 0 base          mlim vector triangle cubic tie
 1 services      memory status
-2 pieces        samples label_sets point_grid
+2 pieces        scalars label_map distance kernel morphology diffusion indicators samples
+2 pieces        label_sets point_grid
 2 solid         shape solid climb exchange slivers
 3 field         plateau field clearance field_build options components
 4 oracle        oracle crossings

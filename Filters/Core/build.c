@@ -9,6 +9,7 @@
 #include "spots.h"
 #include "status.h"
 #include "tidy.h"
+#include "vector.h"
 #include "verify.h"
 #include "volume.h"
 #include "volumes.h"
@@ -65,9 +66,9 @@ static mlim_status seed(build* b)
   const mlim_status status = mlim_seeds_on_components(
     complex, &b->components, NULL, b->options->min_component_voxels, b->context, &count);
   b->refinement.insertion_count += count;
-  return status != MLIM_OK
-           ? status
-           : mlim_seeds_on_sheets(complex, 2 * b->options->facet_size, b->context, &count);
+  return status != MLIM_OK ? status
+                           : mlim_seeds_on_sheets(complex, 2 * b->options->facet_size,
+                               b->refinement.progress, b->context, &count);
 }
 
 /* Replaces the balls by others made from them. */
@@ -80,7 +81,7 @@ static void take_balls(build* b, mlim_balls* balls)
 }
 
 /* Starts with all balls that do not hide each other. */
-static mlim_status start(build* b, const mlim_known* known)
+static mlim_status start(build* b, mlim_known* known)
 {
   enum
   {
@@ -109,13 +110,14 @@ static mlim_status start(build* b, const mlim_known* known)
       return status;
     }
     b->hidden_ball_count += count;
+    known->progress = mlim_max(known->progress, b->refinement.progress);
     take_balls(b, &pruned);
   }
   return mlim_fail(b->context, MLIM_INVALID_ARGUMENT,
     "The protecting balls hide each other; no ball may hold the centre of another one.");
 }
 
-static mlim_status refine_from_balls(build* b, const mlim_known* known)
+static mlim_status refine_from_balls(build* b, mlim_known* known)
 {
   mlim_status status = start(b, known);
   if (status == MLIM_OK)
@@ -151,7 +153,7 @@ static mlim_status refine_topology(build* b)
   {
     MAX_ROUNDS = 2 /* a third one finds a fifth of the first, and changes little */
   };
-  const mlim_known nothing = { 0 };
+  mlim_known nothing = { 0 };
   mlim_status status = refine_from_balls(b, &nothing);
   size_t count = 1;
   for (int round = 0; round < MAX_ROUNDS && status == MLIM_OK && count > 0; ++round)

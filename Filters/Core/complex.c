@@ -487,7 +487,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   return MLIM_OK;
 }
 
-mlim_status mlim_complex_record_all(mlim_complex* complex, mlim_context* context)
+mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_context* context)
 {
   mlim_delaunay_cells all;
   mlim_status status = mlim_delaunay_all(complex->delaunay, context, &all);
@@ -514,7 +514,7 @@ mlim_status mlim_complex_record_all(mlim_complex* complex, mlim_context* context
         return mlim_fail_memory(context, "the restricted facets");
       }
     }
-    status = k % LOOK_EVERY_CELLS == 0 ? mlim_progress(context, MLIM_STAGE_SURFACE, 0) : MLIM_OK;
+    status = k % LOOK_EVERY_CELLS == 0 ? mlim_progress(context, MLIM_STAGE_SURFACE, done) : MLIM_OK;
     if (status != MLIM_OK)
     {
       return status;

@@ -102,8 +102,8 @@ mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex,
 mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
 
 /* Labels and records everything that is there. For after a first series of insertions; until then
-   commits keep only the cells. */
-mlim_status mlim_complex_record_all(mlim_complex* complex, mlim_context* context);
+   commits keep only the cells. `done` is reported as the share of the surface's stage. */
+mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_context* context);
 
 /* The three vertices of facet `index` of a cell, so that its normal points out of the cell. */
 void mlim_complex_facet_vertices(

@@ -3,6 +3,13 @@
 #include "memory.h"
 #include "status.h"
 
+#include <stdlib.h>
+
+enum
+{
+  LONG_LINK = 64 /* vertices of a link from which on insertion is slower than qsort */
+};
+
 mlim_status mlim_ball_links_create(
   const mlim_balls* balls, mlim_context* context, mlim_ball_links* out)
 {
@@ -108,9 +115,22 @@ static int gather(mlim_complex* complex, int32_t vertex, mlim_star* star)
 
 /* ---- the link as a graph ---- */
 
-/* By insertion: a link has about a dozen vertices, and qsort costs more than that. */
+static int compare_ids(const void* a, const void* b)
+{
+  const int32_t x = *(const int32_t*)a;
+  const int32_t y = *(const int32_t*)b;
+  return (x > y) - (x < y);
+}
+
+/* By insertion: a link has about a dozen vertices, and qsort costs more than that. A far vertex or one
+   amid specks may have thousands. */
 static void sort_ids(int32_t* ids, size_t count)
 {
+  if (count > LONG_LINK)
+  {
+    qsort(ids, count, sizeof *ids, compare_ids);
+    return;
+  }
   for (size_t k = 1; k < count; ++k)
   {
     const int32_t id = ids[k];

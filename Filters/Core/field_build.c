@@ -21,38 +21,57 @@ typedef struct build_job
   int has_failed;
 } build_job;
 
+/* One run of points along x whose labels are the same list. */
+typedef struct win_run
+{
+  size_t first, count;
+  const uint16_t* labels; /* ascending, at least one */
+  size_t label_count;
+  double *best, *value; /* scratch, `count` each */
+} win_run;
+
+static void win_along(const mlim_samples* samples, const win_run* run, uint16_t* win)
+{
+  mlim_samples_row(samples, run->labels[0], run->first, run->count, run->best);
+  for (size_t x = 0; x < run->count; ++x)
+  {
+    win[x] = run->labels[0];
+  }
+  for (size_t n = 1; n < run->label_count; ++n)
+  {
+    const uint16_t label = run->labels[n];
+    mlim_samples_row(samples, label, run->first, run->count, run->value);
+    for (size_t x = 0; x < run->count; ++x)
+    {
+      const int is_better = run->value[x] > run->best[x];
+      const int is_tied = run->value[x] == run->best[x];
+      run->best[x] = is_better ? run->value[x] : run->best[x];
+      win[x] = is_better ? label : is_tied ? (uint16_t)(win[x] | MLIM_TIED_FLAG) : win[x];
+    }
+  }
+}
+
 static int win_slice(const mlim_samples* samples, size_t z, uint16_t* winners)
 {
   const size_t nx = (size_t)samples->grid->dims[0];
   const size_t ny = (size_t)samples->grid->dims[1];
   double* best = mlim_allocate(2 * nx, sizeof *best);
-  if (best == NULL)
+  uint16_t* labels = mlim_allocate((size_t)samples->label_count + 1, sizeof *labels);
+  const int has_memory = best != NULL && labels != NULL;
+  for (size_t y = 0; y < ny && has_memory; ++y)
   {
-    return 1;
-  }
-  double* value = best + nx;
-  const int32_t labels = samples->label_count + (samples->outside_label == samples->label_count &&
-                                                  samples->grid->is_outside != NULL);
-  for (size_t y = 0; y < ny; ++y)
-  {
-    const size_t first = nx * (y + ny * z);
-    uint16_t* win = winners + first;
-    mlim_samples_row(samples, 0, first, nx, best);
-    memset(win, 0, nx * sizeof *win);
-    for (int32_t l = 1; l < labels; ++l)
+    win_run run = { .labels = labels, .best = best, .value = best + nx };
+    for (size_t x = 0; x < nx; x += run.count)
     {
-      mlim_samples_row(samples, l, first, nx, value);
-      for (size_t x = 0; x < nx; ++x)
-      {
-        const int is_better = value[x] > best[x];
-        const int is_tied = value[x] == best[x];
-        best[x] = is_better ? value[x] : best[x];
-        win[x] = is_better ? (uint16_t)l : is_tied ? (uint16_t)(win[x] | MLIM_TIED_FLAG) : win[x];
-      }
+      run.first = x + nx * (y + ny * z);
+      run.count = mlim_samples_run(samples, x);
+      run.label_count = mlim_samples_list(samples, &run.first, 1, labels);
+      win_along(samples, &run, winners + run.first);
     }
   }
   mlim_release(best);
-  return 0;
+  mlim_release(labels);
+  return !has_memory;
 }
 
 static void win_body(void* data, size_t begin, size_t end)
@@ -232,7 +251,12 @@ static uint32_t add_mixed(
   rivals rival;
   find_rivals(job, first, corner, &rival);
   const size_t start = layer->pool_count;
-  const size_t labels = (size_t)job->field->label_count;
+  size_t points[8];
+  for (int c = 0; c < 8; ++c)
+  {
+    points[c] = first + corner[c];
+  }
+  const size_t labels = mlim_samples_list(samples, points, 8, layer->list);
   if (start + 1 + 9 * labels > DETAIL ||
       mlim_reserve(&layer->pool, &layer->pool_capacity, start + 1 + 9 * labels, sizeof(uint32_t)))
   {
@@ -243,12 +267,9 @@ static uint32_t add_mixed(
   uint32_t count = 0;
   uint32_t* names = entry + 1;
   uint32_t* values = entry + 1 + labels;
-  for (int32_t l = 0; l < (int32_t)labels; ++l)
+  for (size_t n = 0; n < labels; ++n)
   {
-    if (l == samples->label_count && samples->grid->is_outside == NULL)
-    {
-      continue; /* the outside has no values of its own */
-    }
+    const int32_t l = layer->list[n];
     double value[8];
     read_corners(job, l, first, corner, value);
     if (!is_candidate(&rival, l, value))
@@ -369,6 +390,8 @@ static void layer_body(void* data, size_t begin, size_t end)
   for (size_t z = begin; z < end; ++z)
   {
     field_layer* layer = &job->field->layers[z];
+    layer->list = mlim_allocate((size_t)job->samples->label_count + 1, sizeof *layer->list);
+    layer->has_failed = layer->list == NULL;
     for (int32_t y = 0; y < job->field->bricks[1] && !layer->has_failed; ++y)
     {
       for (int32_t x = 0; x < job->field->bricks[0] && !layer->has_failed; ++x)
@@ -376,6 +399,8 @@ static void layer_body(void* data, size_t begin, size_t end)
         fill_brick(job, (const int32_t[3]){ x, y, (int32_t)z }, corner);
       }
     }
+    mlim_release(layer->list);
+    layer->list = NULL;
   }
 }
 

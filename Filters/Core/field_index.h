@@ -30,6 +30,7 @@ typedef struct field_layer
                      MANY: count, labels (one a word), then 8 floats a label */
   size_t pool_count, pool_capacity;
   size_t max_candidates;
+  uint16_t* list; /* while it is built: the labels at hand */
   int has_failed; /* out of memory, or the pool is too large for its index */
 } field_layer;
 

@@ -3,7 +3,8 @@
    The core knows an axis-aligned grid whose point (i, j, k) lies at (i sx, j sy, k sz). Every
    length is in the unit of the spacing. The host maps products to world space.
 
-   The flow is one way:  grid -> field -> curves -> balls -> mesh (and volume).
+   The flow is one way:
+     [label map -> indicators ->] grid -> field -> curves -> balls -> mesh (and volume).
 
    Every fallible function returns a status, fills `out` last, and on failure leaves `out` empty
    and one sentence in the context. Any product, also an empty one, may be passed to its _free. */
@@ -33,6 +34,7 @@ const char* mlim_status_text(mlim_status status);
 
 typedef enum mlim_stage
 {
+  MLIM_STAGE_INDICATORS,
   MLIM_STAGE_FIELD,
   MLIM_STAGE_CURVES,
   MLIM_STAGE_BALLS,
@@ -110,12 +112,18 @@ typedef enum mlim_unseen
   MLIM_UNSEEN_DROP  /* where it is not seen a label is at most second: the film ends there */
 } mlim_unseen;
 
+/* Indicator functions made from a label map, see below. */
+typedef struct mlim_indicators mlim_indicators;
+
 typedef struct mlim_grid
 {
-  int32_t dims[3];                 /* points along each axis; at least 2 */
-  double spacing[3];               /* finite, above 0 */
-  size_t array_count;              /* 1 to 32000 */
-  const mlim_array* arrays;        /* borrowed */
+  int32_t dims[3];          /* points along each axis; at least 2 */
+  double spacing[3];        /* finite, above 0 */
+  size_t array_count;       /* 1 to 32000 */
+  const mlim_array* arrays; /* borrowed */
+  /* Borrowed; NULL: none. Else the values come from here: array k is the indicator of label k of the
+     map, the arrays' own values are not used, and there are as many arrays as labels. */
+  const mlim_indicators* indicators;
   const unsigned char* is_outside; /* borrowed; one byte a point, not 0: outside; NULL: none */
   mlim_background background;
   size_t background_array; /* with MLIM_BACKGROUND_ARRAY */
@@ -148,6 +156,69 @@ int32_t mlim_field_label(const mlim_field* field, const double point[3]);
 /* The length of which the defaults are multiples: the cube root of a voxel's volume, and the spacing
    itself where it is the same along all axes. Spacings finite and above 0. */
 double mlim_spacing_unit(const double spacing[3]);
+
+/* ---- label maps ---------------------------------------------------------------------------- */
+
+/* One id a grid point. Labels are indices into the ascending ids that occur. */
+typedef struct mlim_label_map
+{
+  int32_t dims[3];
+  double spacing[3];
+  int32_t label_count;
+  int32_t* ids;     /* ascending */
+  uint16_t* labels; /* a grid point; x varies fastest */
+} mlim_label_map;
+
+/* Reads the values of any scalar type; the array's id is not used. Refuses (MLIM_INVALID_ARGUMENT):
+   bad dimensions or spacing, values that are not whole numbers or not of 32 bits (signed), and more
+   than 32000 different ones. */
+mlim_status mlim_label_map_read(const int32_t dims[3], const double spacing[3],
+  const mlim_array* values, mlim_context* context, mlim_label_map* out);
+/* Every label whose id is not among the `count` ascending ones becomes `other`, itself an id of the
+   map or a new one. */
+mlim_status mlim_label_map_select(
+  mlim_label_map* map, const int32_t* ids, size_t count, int32_t other, mlim_context* context);
+void mlim_label_map_free(mlim_label_map* map);
+
+typedef enum mlim_indicator_method
+{
+  MLIM_INDICATOR_DISTANCE, /* signed distance to the label's voxels, inside positive, smoothed */
+  MLIM_INDICATOR_MASK      /* the label's mask (0 or 1), smoothed */
+} mlim_indicator_method;
+
+/* Lengths in units of the grid. */
+typedef struct mlim_indicator_options
+{
+  mlim_indicator_method method;
+  int32_t median_radius; /* in grid points, 0 to 8; 0: off */
+  int32_t dilate_radius; /* in grid points, 0 to 8; 0: off */
+  /* Distances are cut off at this length, inside and outside; at least a voxel's diagonal, at most 60
+     spacings along each axis. 0: 3 of the largest spacings. */
+  double distance_band;
+  /* Of the Gaussian; at most 15 spacings along each axis. 0: 1.5 spacings, along each axis its own;
+     below 0: no smoothing. */
+  double gaussian_sigma;
+  int32_t diffusion_iterations; /* of curvature anisotropic diffusion, 0 to 64; 0: off */
+  double diffusion_time_step;   /* in squares of the smallest spacing; above 0, at most 0.125 */
+  /* Not 0: distances are smoothed by a kernel without second moment, and each label gets a constant,
+     at most six tenths of the smallest spacing, that makes the volume of its region what its voxels have. */
+  int keeps_volume;
+  /* Not 0: parts of one grid point's thickness, and labels that would be nowhere the largest, keep
+     the lead over the others that they have before smoothing. */
+  int keeps_thin;
+} mlim_indicator_options;
+
+mlim_indicator_options mlim_indicator_options_default(void);
+
+/* The indicators, kept only where they can matter: memory grows with the image and the number of
+   labels that meet in a neighbourhood, not with the number of labels. Holds no pointer to the map. */
+mlim_status mlim_indicators_create(const mlim_label_map* map, const mlim_indicator_options* options,
+  mlim_context* context, mlim_indicators** out);
+void mlim_indicators_free(mlim_indicators* indicators);
+/* Values of one label at all grid points, x fastest. */
+void mlim_indicators_write(const mlim_indicators* indicators, int32_t label, float* out);
+/* Whether the label's indicator is the largest at a grid point. */
+int mlim_indicators_has(const mlim_indicators* indicators, int32_t label);
 
 /* ---- options ------------------------------------------------------------------------------- */
 

@@ -34,6 +34,7 @@ typedef struct builder
   const uint16_t* winners;
   mlim_plateau* out;
   stencil* stencils;
+  uint16_t* list; /* the labels at a point */
   size_t capacity;
 } builder;
 
@@ -47,9 +48,10 @@ static double value_at(const mlim_samples* samples, int32_t label, size_t point)
 static int add_point(builder* b, size_t point)
 {
   const double best = value_at(b->samples, b->winners[point] & ~MLIM_TIED_FLAG, point);
-  for (int32_t l = 0; l < b->samples->label_count; ++l)
+  const size_t labels = mlim_samples_list(b->samples, &point, 1, b->list);
+  for (size_t n = 0; n < labels; ++n)
   {
-    if (value_at(b->samples, l, point) != best)
+    if (value_at(b->samples, b->list[n], point) != best)
     {
       continue;
     }
@@ -57,7 +59,7 @@ static int add_point(builder* b, size_t point)
     {
       return 1;
     }
-    b->out->tied[b->out->count++] = (mlim_tied){ .point = point, .label = l };
+    b->out->tied[b->out->count++] = (mlim_tied){ .point = point, .label = b->list[n] };
   }
   return 0;
 }
@@ -180,12 +182,16 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
   {
     return MLIM_OK;
   }
-  for (size_t p = 0; p < points; ++p)
+  b->list = mlim_allocate((size_t)b->samples->label_count + 1, sizeof *b->list);
+  int has_failed = b->list == NULL;
+  for (size_t p = 0; p < points && !has_failed; ++p)
   {
-    if ((b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p))
-    {
-      return mlim_fail_memory(context, "the ties of the indicators");
-    }
+    has_failed = (b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p);
+  }
+  mlim_release(b->list);
+  if (has_failed)
+  {
+    return mlim_fail_memory(context, "the ties of the indicators");
   }
   return b->out->count < INT32_MAX ? MLIM_OK
                                    : mlim_fail(context, MLIM_INVALID_ARGUMENT,

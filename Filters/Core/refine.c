@@ -119,7 +119,7 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   mlim_context* context, unsigned char* is_hidden, size_t* hidden_count)
 {
   mlim_refinement* r = refinement;
-  *r = (mlim_refinement){ .options = options };
+  *r = (mlim_refinement){ .options = options, .progress = known->progress };
   mlim_queue_start(&r->queue, mlim_field_grid_of(oracle->field)->size);
   mlim_status status = mlim_complex_create(oracle, balls, context, &r->complex);
   r->complex.vertex_limit = options->vertex_limit + MLIM_FAR_VERTICES;
@@ -137,7 +137,8 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   if (status == MLIM_OK && *hidden_count == 0)
   {
     status = insert_known(r, known, context);
-    status = status == MLIM_OK ? mlim_complex_record_all(&r->complex, context) : status;
+    status =
+      status == MLIM_OK ? mlim_complex_record_all(&r->complex, r->progress, context) : status;
   }
   if (status != MLIM_OK)
   {

@@ -25,9 +25,11 @@ typedef struct mlim_refinement
   double progress;          /* last reported */
 } mlim_refinement;
 
-/* Points on sheets that are known beforehand. */
+/* What is known beforehand, from a pass with other balls: points on sheets, and the progress that was
+   reported, below which it does not fall. */
 typedef struct mlim_known
 {
+  double progress;
   size_t count;
   double* points; /* 3 each */
   mlim_sheet* sheets;

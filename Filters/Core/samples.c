@@ -1,6 +1,8 @@
 #include "samples.h"
 
+#include "indicators.h"
 #include "memory.h"
+#include "scalars.h"
 #include "status.h"
 
 #include <float.h>
@@ -13,107 +15,6 @@ static double blank_value(const mlim_samples* samples, size_t point)
 {
   const double reach = samples->range > 0 ? samples->range : 1;
   return samples->grid->is_outside[point] ? 2 * reach : -2 * reach;
-}
-
-static void read_strided(const mlim_array* array, size_t first, size_t count, double* out)
-{
-  const size_t stride = array->stride;
-  const size_t start = first * stride;
-  switch (array->type)
-  {
-    case MLIM_INT8:
-    {
-      const int8_t* v = (const int8_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = v[i * stride];
-      }
-      break;
-    }
-    case MLIM_UINT8:
-    {
-      const uint8_t* v = (const uint8_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = v[i * stride];
-      }
-      break;
-    }
-    case MLIM_INT16:
-    {
-      const int16_t* v = (const int16_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = v[i * stride];
-      }
-      break;
-    }
-    case MLIM_UINT16:
-    {
-      const uint16_t* v = (const uint16_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = v[i * stride];
-      }
-      break;
-    }
-    case MLIM_INT32:
-    {
-      const int32_t* v = (const int32_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = v[i * stride];
-      }
-      break;
-    }
-    case MLIM_UINT32:
-    {
-      const uint32_t* v = (const uint32_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = v[i * stride];
-      }
-      break;
-    }
-    case MLIM_INT64:
-    {
-      const int64_t* v = (const int64_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = (double)v[i * stride];
-      }
-      break;
-    }
-    case MLIM_UINT64:
-    {
-      const uint64_t* v = (const uint64_t*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = (double)v[i * stride];
-      }
-      break;
-    }
-    case MLIM_FLOAT32:
-    {
-      const float* v = (const float*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = (double)v[i * stride];
-      }
-      break;
-    }
-    case MLIM_FLOAT64:
-    {
-      const double* v = (const double*)array->values + start;
-      for (size_t i = 0; i < count; ++i)
-      {
-        out[i] = v[i * stride];
-      }
-      break;
-    }
-    case MLIM_SCALAR_END:
-      break;
-  }
 }
 
 static const mlim_array* array_of(const mlim_samples* samples, int32_t label)
@@ -143,7 +44,7 @@ static void rule_row(const mlim_samples* samples, size_t first, size_t count, do
       for (size_t i = 0; i < count; i += 64)
       {
         const size_t n = count - i < 64 ? count - i : 64;
-        read_strided(&grid->arrays[a], first + i, n, value);
+        mlim_scalars_read(&grid->arrays[a], first + i, n, value);
         for (size_t k = 0; k < n; ++k)
         {
           out[i + k] -= value[k];
@@ -157,9 +58,13 @@ void mlim_samples_row(
   const mlim_samples* samples, int32_t label, size_t first, size_t count, double* out)
 {
   const mlim_array* array = array_of(samples, label);
-  if (array != NULL)
+  if (array != NULL && samples->grid->indicators != NULL)
   {
-    read_strided(array, first, count, out);
+    mlim_indicators_row(samples->grid->indicators, label - samples->first_array, first, count, out);
+  }
+  else if (array != NULL)
+  {
+    mlim_scalars_read(array, first, count, out);
   }
   else
   {
@@ -173,6 +78,46 @@ void mlim_samples_row(
       out[i] = blank > 0 || array == NULL ? (blank > out[i] ? blank : out[i]) : out[i];
     }
   }
+}
+
+size_t mlim_samples_run(const mlim_samples* samples, size_t x)
+{
+  const size_t left = (size_t)samples->grid->dims[0] - x;
+  const size_t room = samples->grid->indicators != NULL ? MLIM_BRICK - x % MLIM_BRICK : left;
+  return left < room ? left : room;
+}
+
+size_t mlim_samples_list(
+  const mlim_samples* samples, const size_t* points, size_t count, uint16_t* out)
+{
+  const int has_blank = samples->grid->is_outside != NULL;
+  size_t found = 0;
+  if (samples->grid->indicators == NULL)
+  {
+    const int32_t labels =
+      samples->label_count + (samples->outside_label == samples->label_count && has_blank);
+    for (int32_t l = 0; l < labels; ++l)
+    {
+      out[found++] = (uint16_t)l;
+    }
+    return found;
+  }
+  for (size_t n = 0; n < count; ++n)
+  {
+    found = mlim_indicators_list(samples->grid->indicators, points[n], out, found);
+  }
+  size_t at = 0;
+  while (at < found && out[at] < samples->outside_label)
+  {
+    ++at;
+  }
+  if (has_blank && (at == found || out[at] != samples->outside_label))
+  {
+    memmove(out + at + 1, out + at, (found - at) * sizeof *out);
+    out[at] = (uint16_t)samples->outside_label;
+    ++found;
+  }
+  return found;
 }
 
 void mlim_samples_corners(const mlim_samples* samples, int32_t label, size_t first, double out[8])
@@ -225,7 +170,7 @@ static void scan_slice(const mlim_grid* grid, size_t z, slice_facts* facts)
     double value[CHUNK];
     for (size_t a = 0; a < grid->array_count; ++a)
     {
-      read_strided(&grid->arrays[a], z * slice + i, n, value);
+      mlim_scalars_read(&grid->arrays[a], z * slice + i, n, value);
       int bad = 0;
       for (size_t k = 0; k < n; ++k)
       {
@@ -265,7 +210,7 @@ static mlim_status refuse_bad(const mlim_grid* grid, mlim_context* context)
     for (size_t i = 0; i < points; ++i)
     {
       double value;
-      read_strided(&grid->arrays[a], i, 1, &value);
+      mlim_scalars_read(&grid->arrays[a], i, 1, &value);
       if (!isfinite(value))
       {
         where = count == 0 ? i : where;
@@ -281,6 +226,28 @@ static mlim_status refuse_bad(const mlim_grid* grid, mlim_context* context)
         "all values have to be finite.",
         a, name, count, where % nx, where / nx % ny, where / (nx * ny));
     }
+  }
+  return MLIM_OK;
+}
+
+static mlim_status check_indicators(const mlim_grid* grid, mlim_context* context)
+{
+  const mlim_indicators* in = grid->indicators;
+  if (memcmp(in->dims, grid->dims, sizeof in->dims) != 0 ||
+      grid->array_count != (size_t)in->label_count)
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+      "The indicators are of %d labels on %d x %d x %d points, the grid of %zu arrays on "
+      "%d x %d x %d.",
+      (int)in->label_count, (int)in->dims[0], (int)in->dims[1], (int)in->dims[2], grid->array_count,
+      (int)grid->dims[0], (int)grid->dims[1], (int)grid->dims[2]);
+  }
+  if (grid->background == MLIM_BACKGROUND_CONSTANT ||
+      grid->background == MLIM_BACKGROUND_COMPLEMENT)
+  {
+    return mlim_fail(context, MLIM_INVALID_ARGUMENT,
+      "The indicators of a label map hold the background's; it cannot be a constant or a "
+      "complement.");
   }
   return MLIM_OK;
 }
@@ -323,6 +290,10 @@ static mlim_status check_grid(const mlim_grid* grid, mlim_context* context)
     return mlim_fail(context, MLIM_INVALID_ARGUMENT,
       "The background's value is %g; it has to be finite.", grid->background_value);
   }
+  if (grid->indicators != NULL)
+  {
+    return check_indicators(grid, context);
+  }
   for (size_t a = 0; a < grid->array_count; ++a)
   {
     if (grid->arrays[a].values == NULL || grid->arrays[a].type >= MLIM_SCALAR_END ||
@@ -347,14 +318,9 @@ static void name_labels(const mlim_grid* grid, mlim_samples* out)
                                                                    : out->label_count;
 }
 
-mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim_samples* out)
+/* All slices' facts in one. */
+static mlim_status scan_arrays(const mlim_grid* grid, mlim_context* context, slice_facts* out)
 {
-  *out = (mlim_samples){ 0 };
-  mlim_status status = check_grid(grid, context);
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
   const size_t slices = (size_t)grid->dims[2];
   slice_facts* facts = mlim_allocate(slices, sizeof *facts);
   if (facts == NULL)
@@ -362,31 +328,52 @@ mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim
     return mlim_fail_memory(context, "reading the arrays");
   }
   mlim_parallel_for(context, slices, scan_body, &(scan_job){ .grid = grid, .facts = facts });
-  double low = DBL_MAX;
-  double high = -DBL_MAX;
-  double total = -DBL_MAX;
-  int has_bad = 0;
-  for (size_t z = 0; z < slices; ++z)
+  *out = facts[0];
+  for (size_t z = 1; z < slices; ++z)
   {
-    low = facts[z].min < low ? facts[z].min : low;
-    high = facts[z].max > high ? facts[z].max : high;
-    total = facts[z].max_sum > total ? facts[z].max_sum : total;
-    has_bad |= facts[z].has_bad;
+    out->min = facts[z].min < out->min ? facts[z].min : out->min;
+    out->max = facts[z].max > out->max ? facts[z].max : out->max;
+    out->max_sum = facts[z].max_sum > out->max_sum ? facts[z].max_sum : out->max_sum;
+    out->has_bad |= facts[z].has_bad;
   }
   mlim_release(facts);
-  if (has_bad)
+  return out->has_bad ? refuse_bad(grid, context) : MLIM_OK;
+}
+
+mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim_samples* out)
+{
+  *out = (mlim_samples){ 0 };
+  mlim_status status = check_grid(grid, context);
+  slice_facts facts = { 0 };
+  if (status == MLIM_OK && grid->indicators != NULL)
   {
-    return refuse_bad(grid, context);
+    facts.min = grid->indicators->range[0];
+    facts.max = grid->indicators->range[1];
   }
+  else if (status == MLIM_OK)
+  {
+    status = scan_arrays(grid, context, &facts);
+  }
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  double low = facts.min;
+  double high = facts.max;
+  double largest = 0;
   if (grid->background == MLIM_BACKGROUND_CONSTANT)
   {
     low = grid->background_value < low ? grid->background_value : low;
     high = grid->background_value > high ? grid->background_value : high;
   }
+  else if (grid->background == MLIM_BACKGROUND_COMPLEMENT)
+  {
+    out->total = facts.max_sum;
+    largest = fabs(facts.max_sum);
+  }
   name_labels(grid, out);
-  out->total = total;
   out->range = high - low;
-  const double largest = fmax(fmax(fabs(low), fabs(high)), fabs(total));
+  largest = fmax(largest, fmax(fabs(low), fabs(high)));
   int exponent = 0;
   (void)frexp(isfinite(out->range) && largest > 0 ? largest : 1, &exponent);
   out->scale = ldexp(1.0, -exponent - 3);

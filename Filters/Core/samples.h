@@ -23,6 +23,14 @@ mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim
 void mlim_samples_row(
   const mlim_samples* samples, int32_t label, size_t first, size_t count, double* out);
 
+/* How many points from x on along a row have the same list. */
+size_t mlim_samples_run(const mlim_samples* samples, size_t x);
+
+/* Ascending labels among which is every one that can be the largest, or the second, in a cell that
+   has the `count` grid points for corners; `out` has room for label_count + 1. */
+size_t mlim_samples_list(
+  const mlim_samples* samples, const size_t* points, size_t count, uint16_t* out);
+
 /* Values of a label at the 8 corners of the cell whose first point has index `first`. */
 void mlim_samples_corners(const mlim_samples* samples, int32_t label, size_t first, double out[8]);
 

@@ -210,7 +210,7 @@ static mlim_status seed_block(
 }
 
 mlim_status mlim_seeds_on_sheets(
-  mlim_complex* complex, double distance, mlim_context* context, size_t* count)
+  mlim_complex* complex, double distance, double done, mlim_context* context, size_t* count)
 {
   *count = 0;
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
@@ -225,7 +225,7 @@ mlim_status mlim_seeds_on_sheets(
   int32_t at[3];
   for (at[2] = 0; at[2] < blocks[2]; ++at[2])
   {
-    const mlim_status going = mlim_progress(context, MLIM_STAGE_SURFACE, 0);
+    const mlim_status going = mlim_progress(context, MLIM_STAGE_SURFACE, done);
     if (going != MLIM_OK)
     {
       return going;

@@ -11,9 +11,10 @@
 mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_components* components,
   const unsigned char* is_wanted, size_t min_voxels, mlim_context* context, size_t* count);
 
-/* One a sheet and block; none closer than `distance` to a vertex that is there. */
+/* One a sheet and block; none closer than `distance` to a vertex that is there. `done` is reported as
+   the share of the surface's stage. */
 mlim_status mlim_seeds_on_sheets(
-  mlim_complex* complex, double distance, mlim_context* context, size_t* count);
+  mlim_complex* complex, double distance, double done, mlim_context* context, size_t* count);
 
 /* One point on a crossing unless it is closer than `distance` to a vertex; ++*count if inserted. */
 mlim_status mlim_seeds_insert(mlim_complex* complex, const mlim_crossing* crossing, double distance,

@@ -353,7 +353,8 @@ mlim_status mlim_spots_keep(const mlim_refinement* refinement, const mlim_balls*
   mlim_context* context, mlim_known* out)
 {
   const mlim_complex* complex = &refinement->complex;
-  *out = (mlim_known){ .points = mlim_allocate(3 * complex->vertex_count, sizeof *out->points),
+  *out = (mlim_known){ .progress = refinement->progress,
+    .points = mlim_allocate(3 * complex->vertex_count, sizeof *out->points),
     .sheets = mlim_allocate(complex->vertex_count, sizeof *out->sheets) };
   mlim_point_grid grid = { 0 };
   double reach = 0;

@@ -29,6 +29,8 @@ const char* mlim_stage_text(mlim_stage stage)
 {
   switch (stage)
   {
+    case MLIM_STAGE_INDICATORS:
+      return "Making indicators of the labels";
     case MLIM_STAGE_FIELD:
       return "Indexing the indicator field";
     case MLIM_STAGE_CURVES:

@@ -142,10 +142,6 @@ static mlim_status insert_far(
   mlim_status status = MLIM_OK;
   for (size_t z = 0; z < slices && status == MLIM_OK; ++z)
   {
-    if (job->lists[z].has_failed)
-    {
-      return mlim_fail_memory(context, "the crossings far from the mesh");
-    }
     for (size_t k = 0; k < job->lists[z].count && status == MLIM_OK; ++k)
     {
       status = mlim_seeds_insert(complex, &job->lists[z].crossings[k], distance, context, count);
@@ -156,6 +152,16 @@ static mlim_status insert_far(
     }
   }
   return status;
+}
+
+static int has_failed(const far_job* job, size_t slices)
+{
+  int failed = 0;
+  for (size_t z = 0; z < slices; ++z)
+  {
+    failed = failed || job->lists[z].has_failed;
+  }
+  return failed;
 }
 
 static int has_many_far(const far_job* job, size_t slices)
@@ -212,6 +218,10 @@ static mlim_status look_for_far(
       .from = v->refinement->progress,
       .to = v->refinement->progress };
     status = mlim_parallel_stage(context, &work);
+    if (status == MLIM_OK && has_failed(&job, slices))
+    {
+      status = mlim_fail_memory(context, "the crossings far from the mesh");
+    }
     if (status == MLIM_OK && has_many_far(&job, slices))
     {
       status = insert_far(&job, slices, context, count);

@@ -1,5 +1,6 @@
 /* Fails each allocation in turn, of the core (malloc and its kin are wrapped by the linker) and of
    the triangulation (operator new, test_memory_new.cxx): the right status, empty products, no leak. */
+#include "label_scenes.h"
 #include "shapes.h"
 
 #include <time.h>
@@ -76,6 +77,56 @@ static mlim_status run_failing(const image* im, size_t failing)
   return status;
 }
 
+/* A label map into its field. */
+static mlim_status run_map_failing(const label_scene* scene, size_t failing)
+{
+  mlim_indicator_options options = mlim_indicator_options_default();
+  options.median_radius = 1;
+  const mlim_array values = { .values = scene->values, .type = MLIM_INT32, .stride = 1 };
+  static const int32_t kept[2] = { 5, 17 };
+  mlim_context context = { 0 };
+  mlim_label_map map = { 0 };
+  mlim_indicators* indicators = NULL;
+  mlim_field* field = NULL;
+  mlim_array arrays[5];
+  allocation_count = 0;
+  failing_allocation = failing;
+  mlim_status status = mlim_label_map_read(scene->dims, scene->spacing, &values, &context, &map);
+  CHECK((map.labels != NULL) == (status == MLIM_OK));
+  status = status == MLIM_OK ? mlim_label_map_select(&map, kept, 2, 0, &context) : status;
+  status =
+    status == MLIM_OK ? mlim_indicators_create(&map, &options, &context, &indicators) : status;
+  CHECK(status == MLIM_OK || indicators == NULL);
+  if (status == MLIM_OK)
+  {
+    const mlim_grid grid = label_grid(&map, indicators, arrays);
+    status = mlim_field_create(&grid, &context, &field);
+  }
+  failing_allocation = 0;
+  CHECK((field != NULL) == (status == MLIM_OK));
+  CHECK(status == MLIM_OK || strlen(context.message) > 10);
+  mlim_field_free(field);
+  mlim_indicators_free(indicators);
+  mlim_label_map_free(&map);
+  return status;
+}
+
+static void test_map(void)
+{
+  static const int32_t dims[3] = { 6, 5, 34 };
+  label_scene scene = label_scene_make(dims, SPACING, label_rule_blocks);
+  CHECK(run_map_failing(&scene, 0) == MLIM_OK);
+  const size_t count = allocation_count;
+  CHECK(count > 30);
+  size_t unexpected = 0;
+  for (size_t k = 1; k <= count; ++k)
+  {
+    unexpected += run_map_failing(&scene, k) != MLIM_OUT_OF_MEMORY;
+  }
+  CHECK_COUNT(unexpected, 0);
+  free(scene.values);
+}
+
 /* Seconds of processor time: sanitizers are slow, so they try fewer allocations. Runs that
    fail take half as long as the one that is measured. */
 static const double TIME_LIMIT = 30;
@@ -104,5 +155,6 @@ int main(void)
   CHECK_COUNT(unexpected, 0);
   CHECK(run_failing(im, 0) == MLIM_OK);
   image_free(im);
+  test_map();
   return check_result();
 }

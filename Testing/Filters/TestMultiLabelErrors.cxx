@@ -103,9 +103,9 @@ void CheckArrays()
     [](Mesher* mesher, vtkImageData*) { mesher->SetBackgroundArrayName("air"); });
   CheckRefused("has the id 0", [](Mesher*, vtkImageData* image) { AddIds(image, { 0, 0, 3 }); });
   CheckRefused("same id 3", [](Mesher*, vtkImageData* image) { AddIds(image, { 0, 3, 3 }); });
-  CheckRefused("'LabelIds' holds -5",
+  CheckRefused("'LabelIds' holds 3000000000",
     [](Mesher*, vtkImageData* image) {
-      AddIds(image, { 0, -5, 3 });
+      image->GetFieldData()->AddArray(MakeArray<vtkDoubleArray>("LabelIds", { 0.0, 3e9, 3.0 }));
     });
 }
 

@@ -21,7 +21,8 @@ def is_background(name):
 
 
 def read_labels(image):
-    """Names, ids and values (indexed z, y, x) of the single-component point arrays."""
+    """Names, ids and values (indexed z, y, x) of the single-component point arrays. Ids are those of
+    the field data LabelIds, if it has one entry an array."""
     width, height, depth = image.GetDimensions()
     names, ids, values = [], [], []
     next_id = 1
@@ -37,6 +38,9 @@ def read_labels(image):
             next_id += 1
         names.append(name)
         values.append(vtk_to_numpy(array).reshape(depth, height, width))
+    given = image.GetFieldData().GetArray("LabelIds")
+    if given is not None and given.GetNumberOfValues() == len(ids):
+        ids = vtk_to_numpy(given).astype(int).tolist()
     return names, np.array(ids), values
 
 

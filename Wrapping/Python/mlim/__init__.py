@@ -9,9 +9,9 @@
 
 On the command line: python3 -m mlim atlas.vti -o atlas.vtp; --help says more.
 
-The filters are here as well, for pipelines: vtkMultiLabelInterfaceMesher,
-vtkMultiLabelCurveExtractor and vtkMultiLabelCurveProtector. mlim.update runs one of them with
-progress, Ctrl-C and exceptions.
+The filters are here as well, for pipelines: vtkMultiLabelIndicators,
+vtkMultiLabelCurveExtractor, vtkMultiLabelCurveProtector and vtkMultiLabelInterfaceMesher. mlim.update
+runs one of them with progress, Ctrl-C and exceptions.
 """
 
 from .exporting import write_volume
@@ -24,6 +24,7 @@ from .vtkMultiLabelInterfaceMesher import (
     vtkMultiLabelCurveExtractor,
     vtkMultiLabelCurveProtector,
     vtkMultiLabelImageAlgorithm,
+    vtkMultiLabelIndicators,
     vtkMultiLabelInterfaceMesher,
 )
 from .writers import write
@@ -41,6 +42,7 @@ __all__ = [
     "vtkMultiLabelCurveExtractor",
     "vtkMultiLabelCurveProtector",
     "vtkMultiLabelImageAlgorithm",
+    "vtkMultiLabelIndicators",
     "vtkMultiLabelInterfaceMesher",
     "write",
     "write_volume",

@@ -5,10 +5,9 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Iterable, Mapping
 
-from vtkmodules.util.vtkConstants import VTK_DOUBLE, VTK_FLOAT
 
 from .readers import read
-from .running import MeshError, Progress, update
+from .running import Progress, update
 from .vtkMultiLabelInterfaceMesher import (
     vtkMultiLabelCurveExtractor,
     vtkMultiLabelCurveProtector,
@@ -54,7 +53,9 @@ def mesh(
     """The interface surface of a multi-label image, as vtkMultiLabelInterfaceMesher makes it.
 
     image: a vtkImageData, or the path of a file that mlim.read knows.
-    arrays: names of the arrays to use, one a label; None: all with one component.
+    arrays: names of the arrays to use, one a label; None: all with one component. One array of an
+        integer type alone is a label map, as long as `background` is None; its ids are kept, and 0
+        is the background. vtkMultiLabelIndicators makes maps into arrays with other settings.
     background: None: the array called "background", if there is one; another text: the array of
         that name; a number: one more label with this indicator everywhere (0 for signed
         distances); "complement": one more label with what the others leave of the largest sum
@@ -159,27 +160,10 @@ def _set_input(
     if isinstance(image, (str, os.PathLike)):
         image = read(image)
     names = [arrays] if isinstance(arrays, str) else list(arrays or ())
-    if background is None:
-        _refuse_label_map(image, names)
     algorithm.SetInputData(image)
     for name in names:
         algorithm.GetPointArraySelection().EnableArray(name)
     _set_background(algorithm, background)
-
-
-def _refuse_label_map(image: vtkImageData, names: list[str]) -> None:
-    """A single integer array is a label map, whose values are no indicator function."""
-    for arrays in (image.GetPointData(), image.GetCellData()):
-        used = [arrays.GetArray(i) for i in range(arrays.GetNumberOfArrays())]
-        used = [a for a in used if a is not None and (not names or a.GetName() in names)]
-        if len(used) == 1 and used[0].GetNumberOfComponents() == 1:
-            if used[0].GetDataType() not in (VTK_FLOAT, VTK_DOUBLE):
-                raise MeshError(
-                    f"The image has one array of integers, '{used[0].GetName()}': a label map? "
-                    "One array for each label is needed, or a background beside this one."
-                )
-        if used:
-            return
 
 
 def _index(name: str, value: str, values: tuple[str, ...]) -> int:

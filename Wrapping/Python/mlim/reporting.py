@@ -43,6 +43,7 @@ _UNDONE = (
     ("ratio beside curves", "UnresolvedBallRatioCount"),
 )
 _TIMES = (
+    ("indicators", "TimeIndicators"),
     ("field", "TimeField"),
     ("curves", "TimeCurves"),
     ("balls", "TimeBalls"),
