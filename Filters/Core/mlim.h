@@ -334,7 +334,7 @@ typedef struct mlim_certificate
 {
   size_t label_count;           /* labels that own a component of at least min_component_voxels */
   size_t lost_label_count;      /* of them not in the mesh */
-  size_t component_count;       /* 26-connected, at least min_component_voxels, not background */
+  size_t component_count;       /* 26-connected, at least min_component_voxels */
   size_t lost_component_count;  /* of them not in the mesh */
   size_t disk_failure_count;    /* vertices that do not satisfy the disk condition */
   size_t open_edge_count;       /* edges round which a region's boundary does not close */

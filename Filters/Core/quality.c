@@ -268,6 +268,24 @@ static double smallest_dihedral(
   return least;
 }
 
+/* Between the sheets round a curve's edge; 180 at a crease, which has two triangles. */
+static double dihedral_at(const mlim_mesh* mesh, const mlim_edges* edges, const int32_t edge[2])
+{
+  const int32_t lower = edge[0] < edge[1] ? edge[0] : edge[1];
+  const int32_t upper = edge[0] < edge[1] ? edge[1] : edge[0];
+  size_t first = edges->offsets[lower];
+  while (first < edges->offsets[lower + 1] && edges->uses[first].upper != upper)
+  {
+    ++first;
+  }
+  if (first == edges->offsets[lower + 1])
+  {
+    return 180;
+  }
+  const size_t end = mlim_edges_run_end(edges, lower, first);
+  return end - first > 2 ? smallest_dihedral(mesh, edges, lower, first, end) : 180;
+}
+
 void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound)
 {
   mlim_report* report = &mesh->report;
@@ -282,17 +300,13 @@ void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound
   }
   report->mean_radius_edge_ratio =
     mesh->triangle_count > 0 ? ratio_sum / (double)mesh->triangle_count : 0;
-  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  /* At contacts sheets touch, at any angle. */
+  for (size_t e = 0; e < mesh->edge_count; ++e)
   {
-    size_t end;
-    for (size_t first = edges->offsets[v]; first < edges->offsets[v + 1]; first = end)
+    if (mesh->edge_curves[e] != MLIM_CONTACT)
     {
-      end = mlim_edges_run_end(edges, (int32_t)v, first);
-      if (end - first > 2)
-      {
-        report->min_dihedral_angle = mlim_min(
-          report->min_dihedral_angle, smallest_dihedral(mesh, edges, (int32_t)v, first, end));
-      }
+      report->min_dihedral_angle =
+        mlim_min(report->min_dihedral_angle, dihedral_at(mesh, edges, mesh->edges + 2 * e));
     }
   }
 }

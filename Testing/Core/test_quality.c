@@ -1,5 +1,6 @@
 /* Edges, patches, figures and closedness of meshes made by hand, broken ones too. */
 #include "check.h"
+#include "memory.h"
 #include "quality.h"
 
 #include <string.h>
@@ -122,8 +123,13 @@ static void measure(hand_mesh* h)
   mlim_edges edges;
   CHECK(mlim_edges_create(&h->mesh, NULL, &edges) == MLIM_OK);
   CHECK(mlim_quality_find_patches(&h->mesh, &edges, NULL) == MLIM_OK);
+  CHECK(mlim_quality_settle_edges(&h->mesh, &edges, NULL) == MLIM_OK);
   mlim_quality_measure(&h->mesh, &edges, 1);
   mlim_edges_free(&edges);
+  mlim_release(h->mesh.edges);
+  mlim_release(h->mesh.edge_curves);
+  h->mesh.edges = h->mesh.edge_curves = NULL;
+  h->mesh.edge_count = 0;
 }
 
 /* Every use is there once, under its lower vertex, in order, with the right sign and apex. */

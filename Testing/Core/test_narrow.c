@@ -1,0 +1,169 @@
+/* Sharp angles, thin regions and regions that touch: whole runs with known answers. */
+#include "audit.h"
+#include "shapes.h"
+
+static const double SPACING[3] = { 1, 1, 1 };
+static const double DEGREE = 3.14159265358979323846 / 180;
+
+static run mesh_of(const int32_t dims[3], int labels, int background, shape_function function)
+{
+  image* im = image_sample(dims, SPACING, labels, background, function);
+  const mlim_options options = run_options(0);
+  mlim_context context = { 0 };
+  run r;
+  CHECK(run_grid(&im->grid, &options, &context, &r) == MLIM_OK);
+  image_free(im);
+  return r;
+}
+
+/* ---- wedges ---- */
+
+static double wedge_angle; /* degrees */
+
+/* Three sectors round a line askew to the grid, all functions linear: the interpolants are exact. The
+   middle one is the wedge. */
+static double wedge(const double at[3], int label)
+{
+  const double axis[3] = { 0.12, 0.2, 1 };
+  const double x = at[0] - 6.3 - axis[0] * (at[2] - 5);
+  const double y = at[1] - 7.4 - axis[1] * (at[2] - 5);
+  const double half = 0.5 * wedge_angle * DEGREE;
+  const double up = y * cos(half) - x * sin(half);
+  const double down = -y * cos(half) - x * sin(half);
+  return label == 0 ? 0 : label == 1 ? up : down;
+}
+
+/* Of the sheets round the line, across it. */
+static double true_angle(void)
+{
+  const double half = 0.5 * wedge_angle * DEGREE;
+  const double up[3] = { -sin(half), cos(half), 0.12 * sin(half) - 0.2 * cos(half) };
+  const double down[3] = { -sin(half), -cos(half), 0.12 * sin(half) + 0.2 * cos(half) };
+  double dot = 0;
+  double squared[2] = { 0, 0 };
+  for (int k = 0; k < 3; ++k)
+  {
+    dot += up[k] * down[k];
+    squared[0] += up[k] * up[k];
+    squared[1] += down[k] * down[k];
+  }
+  return 180 - acos(dot / sqrt(squared[0] * squared[1])) / DEGREE;
+}
+
+static void test_wedges(void)
+{
+  const double angles[] = { 30, 8, 4 };
+  const int32_t dims[3] = { 22, 16, 11 };
+  for (size_t k = 0; k < sizeof angles / sizeof *angles; ++k)
+  {
+    const int before = check_failures;
+    wedge_angle = angles[k];
+    run r = mesh_of(dims, 3, -1, wedge);
+    audit_partition(r.field, &r.mesh);
+    CHECK_COUNT(r.mesh.certificate.disk_failure_count, 0);
+    CHECK_COUNT(r.mesh.certificate.lost_label_count, 0);
+    CHECK_COUNT(r.mesh.report.off_curve_edge_count, 0);
+    /* At 4 degrees the thin end of the wedge, 3 spacings of it, is given up to contacts. */
+    CHECK(angles[k] < 8 || fabs(r.mesh.report.min_dihedral_angle - true_angle()) < 1);
+    CHECK_BELOW((double)r.mesh.vertex_count, 6000);
+    run_free(&r);
+    shape_report("wedge", before);
+  }
+}
+
+/* ---- shells ---- */
+
+/* Nested shells 1.4 apart, the middle one 1.4 thick, round a point off the grid. */
+static double shells(const double at[3], int label)
+{
+  const double r = shape_distance(at, 10.3, 10.1, 9.8);
+  const double middle = label == 1 ? 4.7 : label == 2 ? 6.1 : 7.5;
+  return label == 0 ? 0 : 0.75 - fabs(r - middle);
+}
+
+static void test_shells(void)
+{
+  const int32_t dims[3] = { 21, 21, 21 };
+  run r = mesh_of(dims, 4, 0, shells);
+  audit_mesh(r.field, &r.balls, &r.options, &r.mesh);
+  CHECK_COUNT(r.curves.curve_count, 0);
+  CHECK_COUNT(r.mesh.patch_count, 4);
+  CHECK_COUNT(r.mesh.certificate.component_count, 3 + 2); /* and background in and outside */
+  CHECK_COUNT(r.mesh.certificate.lost_component_count, 0);
+  for (int32_t label = 1; label < 4; ++label)
+  {
+    CHECK(audit_euler(r.field, &r.mesh, label) == 4); /* two spheres */
+  }
+  CHECK_BELOW((double)r.mesh.vertex_count, 4000);
+  run_free(&r);
+}
+
+/* ---- rods ---- */
+
+/* Two rods that cross at a right angle, with their axes 1 apart: they meet in a sheet round which one
+   curve runs. */
+static double rods(const double at[3], int label)
+{
+  const double first = hypot(at[1] - 9.2, at[2] - 8.7);
+  const double second = hypot(at[0] - 9.4, at[2] - 9.7);
+  return label == 0 ? 0 : 2.6 - (label == 1 ? first : second);
+}
+
+static void test_rods(void)
+{
+  const int32_t dims[3] = { 20, 20, 19 };
+  run r = mesh_of(dims, 3, 0, rods);
+  audit_mesh(r.field, &r.balls, &r.options, &r.mesh);
+  CHECK_COUNT(r.mesh.certificate.component_count, 2 + 1); /* and background */
+  CHECK_COUNT(r.mesh.certificate.lost_component_count, 0);
+  /* The sheet between them has one edge, inside; each end of a rod has one on the box. */
+  CHECK_COUNT(r.curves.curve_count, 1 + 4);
+  CHECK_COUNT(r.curves.junction_count, 0);
+  CHECK_BELOW((double)r.mesh.vertex_count, 4000);
+  run_free(&r);
+}
+
+/* ---- boxes that touch ---- */
+
+static int shared_axes; /* along which the boxes share an extent: 1 an edge, 0 a corner */
+
+static double touching_boxes(const double at[3], int label)
+{
+  int is_low = 1;
+  int is_high = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int is_shared = k < shared_axes;
+    is_low = is_low && at[k] >= 3 && at[k] <= (is_shared ? 12 : 7);
+    is_high = is_high && at[k] >= (is_shared ? 3 : 8) && at[k] <= 12;
+  }
+  return label == (is_low || is_high);
+}
+
+/* Diagonal neighbours are one component of 26-connected voxels: it is there. The tie between the voxels
+   makes the boxes touch or just miss each other. */
+static void test_touching_boxes(void)
+{
+  const int32_t dims[3] = { 16, 16, 16 };
+  for (shared_axes = 0; shared_axes < 2; ++shared_axes)
+  {
+    const int before = check_failures;
+    run r = mesh_of(dims, 2, 0, touching_boxes);
+    audit_partition(r.field, &r.mesh);
+    CHECK_COUNT(r.mesh.certificate.component_count, 1 + 1); /* and background */
+    CHECK_COUNT(r.mesh.certificate.lost_component_count, 0);
+    CHECK_COUNT(r.mesh.certificate.disk_failure_count, 0);
+    CHECK_BELOW((double)r.mesh.vertex_count, 4000);
+    run_free(&r);
+    shape_report(shared_axes > 0 ? "boxes at an edge" : "boxes at a corner", before);
+  }
+}
+
+int main(void)
+{
+  test_wedges();
+  test_shells();
+  test_rods();
+  test_touching_boxes();
+  return check_result();
+}
