@@ -282,6 +282,7 @@ static int record_facet(mlim_complex* complex, int32_t cell, int index)
   facet->index = (unsigned char)index;
   facet->is_alive = 1;
   facet->is_multiple = count > 1 || !differs;
+  facet->is_settled = 0;
   a->facets[index] = record;
   b->facets[index_apart(b, a)] = record;
   complex->fresh[complex->fresh_count++] = record;

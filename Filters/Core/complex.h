@@ -60,6 +60,7 @@ typedef struct mlim_facet
   unsigned char index;
   unsigned char is_alive;
   unsigned char is_multiple; /* crosses more often than the labels of its cells tell */
+  unsigned char is_settled;  /* for whoever looks at each facet once */
 } mlim_facet;
 
 typedef struct mlim_complex

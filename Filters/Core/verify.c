@@ -242,15 +242,16 @@ static mlim_status look_for_sides(const mlim_verification* v, mlim_context* cont
   mlim_status status = MLIM_OK;
   for (size_t f = 1; f < complex->facet_count && status == MLIM_OK; ++f)
   {
-    const mlim_facet* facet = &complex->facets[f];
-    if (facet->is_alive)
+    mlim_facet* facet = &complex->facets[f];
+    if (facet->is_alive && !facet->is_settled)
     {
       const mlim_cell* cell = &complex->cells[facet->cell];
       const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
       int is_taken = 0;
-      if (cell->label != other &&
-          !mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label, other,
-            mlim_criteria_distance(complex, r->options, &facet->sheet)))
+      facet->is_settled = cell->label == other ||
+                          mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label,
+                            other, mlim_criteria_distance(complex, r->options, &facet->sheet));
+      if (!facet->is_settled)
       {
         status = mlim_refine_ask(r, (int32_t)f, context, &is_taken);
         *count += (size_t)is_taken;
