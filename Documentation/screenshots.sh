@@ -123,7 +123,7 @@ keys() {
 }
 
 start screenshots_image.py
-keys alt+l Up Up Up Up Up Right Down Down
+keys alt+l Up Up Up Up Up Right Down Down Down
 picture paraview_menu
 keys Return
 settle

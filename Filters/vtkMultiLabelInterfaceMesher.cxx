@@ -181,6 +181,16 @@ void vtkMultiLabelInterfaceMesher::SetLabelCellSize(int id, double size)
   this->Modified();
 }
 
+void vtkMultiLabelInterfaceMesher::SetLabelCellSize(const double idAndSize[2])
+{
+  const double id = idAndSize[0];
+  // No label has another id; and its conversion would not be defined.
+  if (id >= VTK_INT_MIN && id <= VTK_INT_MAX && id == std::floor(id))
+  {
+    this->SetLabelCellSize(static_cast<int>(id), idAndSize[1]);
+  }
+}
+
 double vtkMultiLabelInterfaceMesher::GetLabelCellSize(int id)
 {
   const auto found = this->LabelCellSizes.find(id);

@@ -276,9 +276,10 @@ public:
   ///@{
   /**
    * A CellSize of its own, above 0, for the label with this id; 0 takes it back. Ids that no label
-   * has are ignored.
+   * has are ignored. The pair of both is for hosts whose tables have numbers of one type.
    */
   void SetLabelCellSize(int id, double size);
+  void SetLabelCellSize(const double idAndSize[2]);
   double GetLabelCellSize(int id);
   void RemoveAllLabelCellSizes();
   ///@}

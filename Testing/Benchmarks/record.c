@@ -208,7 +208,8 @@ static void write_remarks(const bench_result* results, size_t count, FILE* out)
     if (f->unweighted_count > 0)
     {
       snprintf(text, sizeof text,
-        "%zu vertices on curves come from balls that were split; bulk insertion takes them without "
+        "%zu vertices on curves are contacts or balls beside them; bulk insertion takes them "
+        "without "
         "a weight.",
         f->unweighted_count);
       write_remark(&results[r], text, out);

@@ -381,9 +381,13 @@ void CheckAbort()
     CHECK(arrays == 0 || arrays == 3, "all or nothing");
     CHECK(!isReached || fraction >= 1.0 || arrays == 0, std::to_string(stop));
     CHECK(isReached || arrays == 3, std::to_string(stop));
-    // From 9.2 on VTK itself empties the output of an aborted filter.
-    const int size = filter->GetOutput()->GetDimensions()[0];
-    CHECK(size == Size || (size == 0 && arrays == 0 && isReached), std::to_string(size));
+    // From VTK 9.2 on the pipeline takes the geometry of a stopped filter back.
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
+    const bool keepsGeometry = !isReached;
+#else
+    const bool keepsGeometry = true;
+#endif
+    CHECK(!keepsGeometry || filter->GetOutput()->GetDimensions()[0] == Size, "");
     count = stop == 0 ? static_cast<int>(fractions.size()) : count;
   }
   CHECK(count > 5, "");

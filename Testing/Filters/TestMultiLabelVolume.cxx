@@ -123,6 +123,16 @@ void CheckOptions()
   CHECK(mesher->GetMTime() == after, "nothing has changed");
   mesher->SetLabelCellSize(2, 0.0);
   CHECK(mesher->GetLabelCellSize(2) == 0.0, "");
+  const double pair[2] = { -5.0, 0.5 };
+  mesher->SetLabelCellSize(pair);
+  CHECK(mesher->GetLabelCellSize(-5) == 0.5, "");
+  const vtkMTimeType last = mesher->GetMTime();
+  for (double id : { 2.5, 1e300, -1e300, vtkMath::Nan() })
+  {
+    const double none[2] = { id, 0.5 };
+    mesher->SetLabelCellSize(none);
+  }
+  CHECK(mesher->GetMTime() == last, "no label has such an id");
   mesher->SetLabelCellSize(3, 1.0);
   mesher->RemoveAllLabelCellSizes();
   CHECK(mesher->GetLabelCellSize(3) == 0.0, "");

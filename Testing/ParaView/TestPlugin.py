@@ -1,8 +1,6 @@
 """The filters in pvpython and pvbatch: arrays, second input, outputs, defaults, state file, abort,
 errors."""
 
-import os
-import tempfile
 import time
 import unittest
 
@@ -37,17 +35,6 @@ class Messages:
 def labels_of(mesher):
     labels = plugin.values(plugin.fetch(mesher), "BoundaryLabels")
     return set(labels[labels >= 0].tolist())
-
-
-def through_state_file(source):
-    """The same source in a session that was loaded from a file."""
-    simple.RenameSource("the source", source)
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "state.pvsm")
-        simple.SaveState(path)
-        simple.ResetSession()
-        simple.LoadState(path)
-    return simple.FindSource("the source")
 
 
 class TestPlugin(unittest.TestCase):
@@ -106,6 +93,26 @@ class TestPlugin(unittest.TestCase):
         self.assertEqual(tuple(display.ColorArrayName), ("CELLS", "Label"))
         simple.Delete(view)
 
+    def test_label_cell_sizes(self):
+        mesher = self.mesher(FacetSize=0.12, VolumeMesh=1, RemoveSlivers=0)
+
+        def counts():
+            labels = plugin.values(plugin.fetch(mesher, 1), "Label")
+            return np.bincount(labels, minlength=REGIONS + 1)
+
+        self.assertEqual(list(mesher.LabelCellSizes), [])
+        before = counts()
+        mesher.LabelCellSizes = [1, 0.06, 3, 0.05]
+        volume = plugin.fetch(mesher, 1)
+        sizes = plugin.values(volume, "LabelCellSizes", "FieldData")
+        self.assertEqual(np.reshape(sizes, (-1, 2)).tolist(), [[1, 0.06], [3, 0.05]])
+        self.assertGreater(counts()[1], 1.5 * before[1])
+        self.assertGreater(counts()[3], 1.5 * before[3])
+        mesher.LabelCellSizes = [1.5, 0.01, 1e12, 0.01]
+        self.assertEqual(counts().tolist(), before.tolist(), "ids that no label has")
+        mesher.LabelCellSizes = []
+        self.assertEqual(counts().tolist(), before.tolist())
+
     def test_array_selection(self):
         mesher = self.mesher()
         names = list(mesher.PointArrays)
@@ -163,7 +170,7 @@ class TestPlugin(unittest.TestCase):
         mesher.PointArrays = ["sphere1", "sphere2", "sphere3"]
         mesher.Balls = None
         before = plugin.digest(plugin.fetch(mesher))
-        mesher = through_state_file(mesher)
+        mesher = plugin.through_state_file(mesher)
         self.assertEqual(mesher.FacetSize, 0.07)
         self.assertEqual(mesher.CapBoundary, 0)
         self.assertEqual(mesher.BackgroundMode, "Complement")
@@ -174,7 +181,7 @@ class TestPlugin(unittest.TestCase):
         mesher = self.mesher(Balls=self.balls())
         mesher.Balls.EdgeSize = 0.05
         before = plugin.digest(plugin.fetch(mesher))
-        mesher = through_state_file(mesher)
+        mesher = plugin.through_state_file(mesher)
         self.assertEqual(plugin.digest(plugin.fetch(mesher)), before)
 
     def test_progress_and_abort(self):

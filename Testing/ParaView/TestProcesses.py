@@ -40,7 +40,7 @@ class TestProcesses(unittest.TestCase):
         )
         ranks.sort(key=lambda report: report["rank"])
         self.assertEqual([report["rank"] for report in ranks], [0, 1])
-        for stage in ("curves", "balls", "surface"):
+        for stage in ("curves", "balls", "surface", "regions"):
             first, second = ranks[0][stage], ranks[1][stage]
             self.assertEqual(first["digest"], alone[stage]["digest"], stage)
             self.assertGreater(first["points"], 0)

@@ -11,8 +11,15 @@ image = plugin.read()
 curves = simple.MultiLabelCurveExtractor(Input=image)
 balls = simple.MultiLabelCurveProtector(Input=curves)
 surface = simple.MultiLabelInterfaceMesher(Input=image)
+label_map = simple.Calculator(
+    Input=image, Function="(sphere1 > 0) + 2 * (sphere2 > 0)", ResultArrayName="labels"
+)
+indicators = simple.MultiLabelIndicators(Input=label_map, LabelArray=["POINTS", "labels"])
+regions = simple.MultiLabelInterfaceMesher(Input=indicators)
+regions.PointArrays = ["background", "label_1", "label_2"]
 report = {"rank": vtkMultiProcessController.GetGlobalController().GetLocalProcessId()}
-for name, stage in (("curves", curves), ("balls", balls), ("surface", surface)):
+stages = {"curves": curves, "balls": balls, "surface": surface, "regions": regions}
+for name, stage in stages.items():
     stage.UpdatePipeline()
     data = stage.GetClientSideObject().GetOutputDataObject(0)
     owners = (data.GetPointData(), data.GetCellData())

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import sys
+import tempfile
 
 from paraview import servermanager, simple
 from paraview.vtk import vtkImageData
@@ -69,3 +70,14 @@ def source_of(image):
     producer.GetClientSideObject().SetOutput(image)
     producer.UpdatePipeline()
     return producer
+
+
+def through_state_file(source):
+    """The same source in a session that was loaded from a file."""
+    simple.RenameSource("the source", source)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "state.pvsm")
+        simple.SaveState(path)
+        simple.ResetSession()
+        simple.LoadState(path)
+    return simple.FindSource("the source")

@@ -36,6 +36,8 @@ from TestPipeline import digest, make_image
 # does not count.
 MAX_STOP_TIME = 0.5
 SIZE = 20
+# Of a region's volume from its voxels': of some 500, which VolumeTolerance does not hold.
+MAX_SMALL_DIFFERENCE = 0.1
 
 
 def soft_ball():
@@ -45,6 +47,22 @@ def soft_ball():
     soft = np.clip(128 + 20 * values, 0, 255).astype(np.uint8)
     array = numpy_to_vtk(soft, deep=True)
     array.SetName("soft")
+    image.GetPointData().SetScalars(array)
+    return image
+
+
+def label_map():
+    """A ball with the id 3 beside one with the id 17, in an image with a spacing."""
+    image = vtkImageData()
+    image.SetDimensions(SIZE, SIZE, SIZE)
+    image.SetSpacing(1.5, 1.5, 2)
+    z, y, x = np.indices((SIZE, SIZE, SIZE)).reshape(3, -1)
+    ids = np.zeros(SIZE**3, np.int16)
+    for label, center in ((3, 7), (17, 12.5)):
+        squares = (x - center) ** 2 + (y - 9.5) ** 2 + (z - 9.5) ** 2
+        ids[(squares < 25) & (ids == 0)] = label
+    array = numpy_to_vtk(ids, deep=True)
+    array.SetName("labels")
     image.GetPointData().SetScalars(array)
     return image
 
@@ -175,6 +193,43 @@ class TestCommand(unittest.TestCase):
             self.assertLess(abs(triangles - expected.GetNumberOfPolys()), 30, path)
             sizes = [np.ptp(np.reshape(d.GetBounds(), (3, 2)), axis=1) for d in (surface, expected)]
             np.testing.assert_allclose(*sizes, atol=0.2, err_msg=path)
+
+    def test_label_maps(self):
+        """Files of labels are meshed as such, with their ids, as through the indicators filter."""
+        image = label_map()
+        ids = vtk_to_numpy(image.GetPointData().GetScalars())
+        voxel = np.prod(image.GetSpacing())
+        for path in (
+            self.write(vtkNIFTIImageWriter(), image, "map.nii.gz"),
+            self.write(vtkMetaImageWriter(), image, "map.mha"),
+            self.write_image(image),
+        ):
+            words = (path, "-o", self.path("out.vtp"), "--volume", self.path("out.vtu"))
+            code, out, error = self.run_command(*words)
+            self.assertEqual((code, error), (0, ""), path)
+            self.assertRegex(out, r"labels in the mesh +3 of 3\n", path)
+            surface = self.surface()
+            self.assertEqual(labels_of(surface), {0, 3, 17}, path)
+            fields = surface.GetFieldData()
+            volumes = dict(
+                zip(
+                    vtk_to_numpy(fields.GetArray("LabelIds")).tolist(),
+                    vtk_to_numpy(fields.GetArray("LabelVolumes")).tolist(),
+                )
+            )
+            for label in (3, 17):
+                expected = (ids == label).sum() * voxel
+                self.assertLess(abs(volumes[label] / expected - 1), MAX_SMALL_DIFFERENCE, path)
+            indicators = mlim.vtkMultiLabelIndicators()
+            indicators.SetInputData(mlim.read(path))
+            indicators.Update()
+            through = mlim.mesh(indicators.GetOutput())
+            self.assertEqual(digest(surface), digest(through), path)
+            reader = vtkXMLUnstructuredGridReader()
+            reader.SetFileName(self.path("out.vtu"))
+            reader.Update()
+            labels = vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("Label"))
+            self.assertEqual(set(labels.tolist()), {3, 17}, path)
 
     def test_writers(self):
         image = self.write_image()
