@@ -219,9 +219,55 @@ static int is_in_ball(const spotting* s, const double center[3], double radius)
   return 0;
 }
 
-/* Makes the radius small enough for the contacts that are there. 0: there is no room. */
+static unsigned faces_at(const spotting* s, const double point[3])
+{
+  unsigned faces = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    faces |= point[k] <= 0 ? 1u << (2 * k) : 0;
+    faces |= point[k] >= s->grid->size[k] ? 2u << (2 * k) : 0;
+  }
+  return faces;
+}
+
+/* At a distance from a face: small enough for vertices on the face, which keep the smallest distance from
+   the ball in power, and OUTSIDE. */
+static double radius_below(const spotting* s, double distance)
+{
+  const double squared = distance * distance;
+  return sqrt(fmax(0, fmin(squared - s->unit * s->unit, squared / (1 + 1.5 * OUTSIDE))));
+}
+
+/* Caps stay flat and the box keeps its edges: the contact does not reach a face on which it is not, nor
+   take the place of a ball on such a face. */
+static void keep_off_faces(const spotting* s, mlim_contact* contact)
+{
+  const unsigned faces = faces_at(s, contact->center);
+  for (int k = 0; k < 3; ++k)
+  {
+    const double low = contact->center[k];
+    const double high = s->grid->size[k] - contact->center[k];
+    contact->radius = low > 0 ? fmin(contact->radius, radius_below(s, low)) : contact->radius;
+    contact->radius = high > 0 ? fmin(contact->radius, radius_below(s, high)) : contact->radius;
+  }
+  mlim_point_walk walk;
+  const double reach = contact->radius + s->largest_ball;
+  for (int32_t b = mlim_point_grid_first(&s->ball_grid, contact->center, reach, &walk); b >= 0;
+       b = mlim_point_grid_next(&s->ball_grid, &walk))
+  {
+    const double* at = s->balls->centers + 3 * (size_t)b;
+    if (faces_at(s, at) & ~faces)
+    {
+      const double d = mlim_distance(at, contact->center) - (APART - 1) * s->balls->radii[b];
+      contact->radius = fmin(contact->radius, d / APART);
+    }
+  }
+}
+
+/* Makes the radius small enough for what is there. 0: there is no room. */
 static int fit(const spotting* s, mlim_contact* contact)
 {
+  keep_off_faces(s, contact);
   const double reach = APART * LARGEST * s->unit;
   mlim_point_walk walk;
   for (int32_t c = mlim_point_grid_first(&s->contact_grid, contact->center, reach, &walk); c >= 0;

@@ -109,6 +109,14 @@ static int cell_unseen(const mlim_refinement* r, int32_t id)
   return count;
 }
 
+/* The label beyond a facet, for the cell to take: not from outside the box, so that caps stay flat. */
+static int32_t label_beyond(const mlim_complex* complex, int32_t id, int index)
+{
+  const mlim_cell* cell = &complex->cells[id];
+  return mlim_complex_face(complex, id, index) < 0 ? complex->cells[cell->neighbors[index]].label
+                                                   : cell->label;
+}
+
 /* The label for a cell that leaves the fewest strays, among its neighbours', its vertices' and its own. */
 static int32_t best_label(const mlim_complex* complex, int32_t id)
 {
@@ -118,9 +126,9 @@ static int32_t best_label(const mlim_complex* complex, int32_t id)
   for (int v = 0; v < 4 && least > 0; ++v)
   {
     const mlim_vertex* vertex = &complex->vertices[cell->vertices[v]];
-    const int32_t tried[3] = { complex->cells[cell->neighbors[v]].label,
-      vertex->kind == MLIM_VERTEX_SURFACE ? vertex->sheet.low : best,
-      vertex->kind == MLIM_VERTEX_SURFACE ? vertex->sheet.high : best };
+    const int is_inside = vertex->kind == MLIM_VERTEX_SURFACE && vertex->sheet.face < 0;
+    const int32_t tried[3] = { label_beyond(complex, id, v), is_inside ? vertex->sheet.low : best,
+      is_inside ? vertex->sheet.high : best };
     for (int t = 0; t < 3; ++t)
     {
       const int count = cell_strays(complex, id, tried[t]);
@@ -335,7 +343,7 @@ static size_t mend_part(tidier* t)
   {
     for (int k = 0; k < 4; ++k)
     {
-      const int32_t other = complex->cells[complex->cells[t->part[p]].neighbors[k]].label;
+      const int32_t other = label_beyond(complex, t->part[p], k);
       if (other != own && !contains(tried, tried_count, other))
       {
         tried[tried_count++] = other;

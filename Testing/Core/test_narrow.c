@@ -50,6 +50,42 @@ static double true_angle(void)
   return 180 - acos(dot / sqrt(squared[0] * squared[1])) / DEGREE;
 }
 
+/* The caps cover the box exactly: every vertex that is said to be on it is, and no area is lost. */
+static void check_box(const run* r, const int32_t dims[3])
+{
+  double size[3];
+  double area = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    size[k] = dims[k] - 1;
+  }
+  for (size_t v = 0; v < r->mesh.vertex_count; ++v)
+  {
+    int is_on_box = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const double x = r->mesh.vertices[3 * v + (size_t)k];
+      is_on_box = is_on_box || !(x > 0) || !(x < size[k]);
+    }
+    CHECK(is_on_box == (r->mesh.node_types[v] >= MLIM_NODE_ON_BOX));
+  }
+  for (size_t t = 0; t < r->mesh.triangle_count; ++t)
+  {
+    double normal[3];
+    const double* p = audit_point(&r->mesh, r->mesh.triangles[3 * t]);
+    const double* q = audit_point(&r->mesh, r->mesh.triangles[3 * t + 1]);
+    const double* o = audit_point(&r->mesh, r->mesh.triangles[3 * t + 2]);
+    double u[3];
+    double w[3];
+    mlim_subtract(q, p, u);
+    mlim_subtract(o, p, w);
+    mlim_cross(u, w, normal);
+    area += r->mesh.triangle_faces[t] >= 0 ? 0.5 * sqrt(mlim_dot(normal, normal)) : 0;
+  }
+  const double box = 2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+  CHECK_BELOW(fabs(area / box - 1), 1e-9);
+}
+
 static void test_wedges(void)
 {
   const double angles[] = { 30, 8, 4 };
@@ -65,6 +101,7 @@ static void test_wedges(void)
     CHECK_COUNT(r.mesh.report.off_curve_edge_count, 0);
     /* At 4 degrees the thin end of the wedge, 3 spacings of it, is given up to contacts. */
     CHECK(angles[k] < 8 || fabs(r.mesh.report.min_dihedral_angle - true_angle()) < 1);
+    check_box(&r, dims);
     CHECK_BELOW((double)r.mesh.vertex_count, 6000);
     run_free(&r);
     shape_report("wedge", before);
