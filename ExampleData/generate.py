@@ -138,8 +138,9 @@ def write(image, path):
     writer = vtkXMLImageDataWriter()
     writer.SetFileName(str(path))
     writer.SetInputData(image)
-    writer.SetDataModeToAppended()
-    writer.EncodeAppendedDataOff()
+    # Inline: with a newer version of their XML parser, expat, ParaView 5.11 and VTK 9.2 cannot read
+    # appended data.
+    writer.SetDataModeToBinary()
     writer.SetCompressorTypeToZLib()
     writer.SetCompressionLevel(9)
     if not writer.Write():

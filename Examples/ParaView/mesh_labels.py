@@ -41,7 +41,8 @@ def main():
     mesh = simple.MultiLabelInterfaceMesher(Input=image, Balls=balls)
     if len(sys.argv) == 5:
         mesh.FacetSize = float(sys.argv[4])
-    simple.SaveData(os.path.join(folder, "surface.vtp"), proxy=mesh)
+    # Inline data: with a newer XML parser, ParaView 5.11 cannot read the appended data of its default.
+    simple.SaveData(os.path.join(folder, "surface.vtp"), proxy=mesh, DataMode="Binary")
 
     view = simple.CreateRenderView(ViewSize=[1000, 700])
     display = simple.Show(mesh, view)
