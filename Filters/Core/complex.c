@@ -226,16 +226,17 @@ static size_t farthest(const mlim_crossing* crossing, size_t count, const double
   return best;
 }
 
-/* A segment that stays where the field is uniform: most same-label duals end here. */
+/* A segment that stays where the field is uniform, as the duals between most cells of one label do:
+   round each end lies a cube of its label, and the two cover the segment together. */
 static int is_clear(const mlim_complex* complex, const mlim_cell* a, const mlim_cell* b)
 {
-  const double* spacing = mlim_field_grid_of(complex->oracle.field)->spacing;
+  const double* inverse = mlim_field_grid_of(complex->oracle.field)->inverse_spacing;
   double longest = 0;
   for (int k = 0; k < 3; ++k)
   {
-    longest = mlim_max(longest, fabs(a->center[k] - b->center[k]) / spacing[k]);
+    longest = mlim_max(longest, fabs(a->center[k] - b->center[k]) * inverse[k]);
   }
-  return longest <= a->clearance - 1 || longest <= b->clearance - 1;
+  return longest <= (double)a->clearance + (double)b->clearance;
 }
 
 static mlim_sheet sheet_of(const mlim_crossing* crossing)
@@ -302,9 +303,7 @@ static void take_cell(mlim_complex* complex, const mlim_delaunay_cell* made)
     complex->vertices[made->vertices[k]].cell = made->id;
   }
   mlim_copy(made->center, cell->center);
-  int clearance;
-  cell->label = mlim_field_label_near(complex->oracle.field, cell->center, &clearance);
-  cell->clearance = clearance;
+  cell->label = mlim_field_label_near(complex->oracle.field, cell->center, &cell->clearance);
 }
 
 static int reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)

@@ -47,7 +47,7 @@ typedef struct mlim_cell
   int32_t neighbors[4];
   int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
   int32_t label;
-  int32_t clearance; /* mlim_field_label_near at the centre */
+  float clearance; /* mlim_field_label_near at the centre */
   uint32_t mark;
 } mlim_cell;
 

@@ -2,6 +2,7 @@
 
 #include "field_index.h"
 #include "memory.h"
+#include "vector.h"
 
 #include <math.h>
 
@@ -130,32 +131,73 @@ static int32_t mixed_label(const uint32_t* entry, uint32_t word, const double at
   return (int32_t)entry[1 + winner];
 }
 
-int32_t mlim_field_label_near(const mlim_field* field, const double point[3], int* clearance)
+/* How far a point is outside the box, in cells along the axis where it is farthest; finite also for a
+   point that is not. */
+static double cells_outside(const mlim_field* field, const double point[3])
 {
-  int32_t cell[3];
-  double at[3];
-  *clearance = 0;
+  double most = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const double g = point[k] * field->grid.inverse_spacing[k];
+    const double beyond = g < 0 ? -g : g - field->grid.cells[k];
+    most = beyond > most ? beyond : most;
+  }
+  return mlim_min(most, 1e30);
+}
+
+/* The cell that holds a point, and where in it; 0 for a point outside the box. */
+static int find_cell(const mlim_field* field, const double point[3], int32_t cell[3], double at[3])
+{
   for (int k = 0; k < 3; ++k)
   {
     if (!(point[k] >= 0 && point[k] <= field->grid.size[k]))
     {
-      return field->outside_label;
+      return 0;
     }
-    const double g = point[k] * field->inverse_spacing[k];
+    const double g = point[k] * field->grid.inverse_spacing[k];
     cell[k] = (int32_t)g;
     cell[k] = cell[k] >= field->grid.cells[k] ? field->grid.cells[k] - 1 : cell[k];
     at[k] = g - cell[k];
   }
-  const uint32_t word = field_cell_word(field, cell, clearance);
-  if (!(word & (uint32_t)MIXED))
-  {
-    return (int32_t)word;
-  }
-  return mixed_label(field_pool_entry(field, cell, word), word, at);
+  return 1;
 }
 
 int32_t mlim_field_label(const mlim_field* field, const double point[3])
 {
-  int clearance;
-  return mlim_field_label_near(field, point, &clearance);
+  int32_t cell[3];
+  double at[3];
+  if (!find_cell(field, point, cell, at))
+  {
+    return field->outside_label;
+  }
+  const uint32_t word = field_cell_word(field, cell, NULL);
+  return word & (uint32_t)MIXED ? mixed_label(field_pool_entry(field, cell, word), word, at)
+                                : (int32_t)word;
+}
+
+int32_t mlim_field_label_near(const mlim_field* field, const double point[3], float* clearance)
+{
+  /* Rounding to float must not make the cube larger. */
+  const double below_one = 1 - 1e-6;
+  int32_t cell[3];
+  double at[3];
+  if (!find_cell(field, point, cell, at))
+  {
+    *clearance = (float)(below_one * cells_outside(field, point));
+    return field->outside_label;
+  }
+  int reach;
+  const uint32_t word = field_cell_word(field, cell, &reach);
+  if (word & (uint32_t)MIXED)
+  {
+    *clearance = 0;
+    return mixed_label(field_pool_entry(field, cell, word), word, at);
+  }
+  double least = 1;
+  for (int k = 0; k < 3; ++k)
+  {
+    least = mlim_min(least, mlim_min(at[k], 1 - at[k]));
+  }
+  *clearance = (float)(below_one * (reach - 1 + least));
+  return (int32_t)word;
 }

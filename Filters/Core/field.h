@@ -26,6 +26,7 @@ typedef struct mlim_field_grid
   int32_t dims[3];  /* points */
   int32_t cells[3]; /* dims - 1 */
   double spacing[3];
+  double inverse_spacing[3];
   double size[3]; /* the box is [0, size] */
   double unit;    /* cube root of the voxel's volume: what "spacing" means as a length */
   double min_spacing;
@@ -47,8 +48,8 @@ mlim_candidates mlim_field_cell(
 int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3]);
 const uint16_t* mlim_field_point_labels(const mlim_field* field);
 
-/* mlim_field_label, and a number of cells within which (Chebyshev, from the point's own cell, which
-   counts as 1) every cell is uniform with this label and inside the box; 0 in a mixed cell. */
-int32_t mlim_field_label_near(const mlim_field* field, const double point[3], int* clearance);
+/* mlim_field_label, and half the side, in cells, of a cube round the point all of which has this label;
+   0 in a mixed cell. */
+int32_t mlim_field_label_near(const mlim_field* field, const double point[3], float* clearance);
 
 #endif

@@ -436,7 +436,7 @@ static mlim_status start_field(
     g->cells[k] = grid->dims[k] - 1;
     g->spacing[k] = grid->spacing[k];
     g->size[k] = g->cells[k] * g->spacing[k];
-    field->inverse_spacing[k] = 1 / g->spacing[k];
+    g->inverse_spacing[k] = 1 / g->spacing[k];
     field->bricks[k] = (g->cells[k] + BRICK - 1) / BRICK;
     points *= (size_t)g->dims[k];
     bricks *= (size_t)field->bricks[k];

@@ -37,7 +37,6 @@ typedef struct field_layer
 struct mlim_field
 {
   mlim_field_grid grid;
-  double inverse_spacing[3];
   int32_t label_count; /* with the outside */
   int32_t outside_label;
   int32_t* ids;      /* a label */

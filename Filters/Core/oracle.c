@@ -22,6 +22,7 @@ typedef struct walk
   const mlim_field* field;
   double start[3];     /* in cells */
   double direction[3]; /* from start to end, in cells */
+  double inverse[3];   /* of the direction */
   double begin[3];     /* in lengths, for the result */
   double extent[3];
   double length; /* in lengths */
@@ -313,8 +314,8 @@ static int clip(const walk* w, double t[2], int32_t faces[2])
       continue;
     }
     const int is_back = w->direction[k] < 0;
-    const double enter = ((is_back ? top : 0) - w->start[k]) / w->direction[k];
-    const double leave = ((is_back ? 0 : top) - w->start[k]) / w->direction[k];
+    const double enter = ((is_back ? top : 0) - w->start[k]) * w->inverse[k];
+    const double leave = ((is_back ? 0 : top) - w->start[k]) * w->inverse[k];
     if (enter > t[0])
     {
       t[0] = enter;
@@ -351,7 +352,7 @@ static double exit_of(const walk* w, const int32_t cell[3], int reach, int* axis
     if (w->direction[k] != 0)
     {
       const double side = w->direction[k] > 0 ? cell[k] + 1 + reach : cell[k] - reach;
-      const double t = (side - w->start[k]) / w->direction[k];
+      const double t = (side - w->start[k]) * w->inverse[k];
       if (t < least)
       {
         least = t;
@@ -414,8 +415,9 @@ static size_t cross_exact(const mlim_oracle* oracle, const double start[3], cons
   {
     w.begin[k] = start[k];
     w.extent[k] = end[k] - start[k];
-    w.start[k] = start[k] * w.field->inverse_spacing[k];
-    w.direction[k] = end[k] * w.field->inverse_spacing[k] - w.start[k];
+    w.start[k] = start[k] * w.field->grid.inverse_spacing[k];
+    w.direction[k] = end[k] * w.field->grid.inverse_spacing[k] - w.start[k];
+    w.inverse[k] = 1 / w.direction[k];
   }
   w.length = sqrt(mlim_dot(w.extent, w.extent));
   double t[2];

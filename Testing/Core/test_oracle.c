@@ -101,21 +101,23 @@ static void test_segment(const mlim_field* field, const double a[3], const doubl
   }
 }
 
+/* Points outside the box count too: nothing but the outside may be in their cube. */
 static void test_clearance(const mlim_field* field, uint64_t seed)
 {
   for (int n = 0; n < 300; ++n)
   {
     double point[3];
-    int clearance;
+    float clearance;
     random_point(&seed, point);
     const int32_t label = mlim_field_label_near(field, point, &clearance);
+    CHECK(clearance >= 0 && label == mlim_field_label(field, point));
     for (int s = 0; s < 20 && clearance > 0; ++s)
     {
       double other[3];
       double margin;
       for (int k = 0; k < 3; ++k)
       {
-        other[k] = point[k] + (clearance - 1) * f.spacing[k] * (2 * random_unit(&seed) - 1);
+        other[k] = point[k] + (double)clearance * f.spacing[k] * (2 * random_unit(&seed) - 1);
       }
       CHECK(random_field_label(&f, other, &margin) == label);
     }
