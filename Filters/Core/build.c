@@ -59,16 +59,17 @@ static mlim_status check_balls(
 }
 
 /* Seeds are no closer to each other than facets of the wanted size would be. */
-static mlim_status seed(build* b)
+static mlim_status seed(build* b, int has_points)
 {
   size_t count;
   mlim_complex* complex = &b->refinement.complex;
   const mlim_status status = mlim_seeds_on_components(
     complex, &b->components, NULL, b->options->min_component_voxels, b->context, &count);
   b->refinement.insertion_count += count;
-  return status != MLIM_OK ? status
-                           : mlim_seeds_on_sheets(complex, 2 * b->options->facet_size,
-                               b->refinement.progress, b->context, &count);
+  /* Points that are known already stand on every sheet. */
+  return status != MLIM_OK || has_points ? status
+                                         : mlim_seeds_on_sheets(complex, 2 * b->options->facet_size,
+                                             b->refinement.progress, b->context, &count);
 }
 
 /* Replaces the balls by others made from them. */
@@ -122,7 +123,7 @@ static mlim_status refine_from_balls(build* b, mlim_known* known)
   mlim_status status = start(b, known);
   if (status == MLIM_OK)
   {
-    status = seed(b);
+    status = seed(b, known->count > 0);
   }
   return status == MLIM_OK ? mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context)
                            : status;
@@ -276,8 +277,10 @@ static mlim_status measure_quality(build* b, mlim_mesh* out)
 
 static mlim_status count_disks(build* b, mlim_mesh* out)
 {
-  return mlim_refine_count_disks(
-    &b->refinement, MLIM_CERTIFY_FROM, b->context, &out->certificate.disk_failure_count);
+  const mlim_status status =
+    mlim_refine_settle_disks(&b->refinement, MLIM_CERTIFY_FROM, b->context);
+  out->certificate.disk_failure_count = mlim_refine_count_broken(&b->refinement);
+  return status;
 }
 
 static mlim_status certify(build* b, mlim_mesh* out)

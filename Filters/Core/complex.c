@@ -137,31 +137,31 @@ int mlim_complex_is_on_sheet(
 
 /* ---- records ---- */
 
-static int mark_dirty(mlim_complex* complex, int32_t vertex)
+/* Room is there: dirty_capacity grows with vertex_capacity. */
+static void mark_dirty(mlim_complex* complex, int32_t vertex)
 {
   mlim_vertex* v = &complex->vertices[vertex];
-  if (v->is_dirty || v->kind == MLIM_VERTEX_FAR)
+  if (!v->is_dirty && v->kind != MLIM_VERTEX_FAR)
   {
-    return 0;
+    v->is_dirty = 1;
+    complex->dirty[complex->dirty_count++] = vertex;
   }
-  if (mlim_reserve(&complex->dirty, &complex->dirty_capacity, complex->dirty_count + 1,
-        sizeof *complex->dirty))
-  {
-    return 1;
-  }
-  v->is_dirty = 1;
-  complex->dirty[complex->dirty_count++] = vertex;
-  return 0;
 }
 
-static int mark_facet_dirty(mlim_complex* complex, int32_t cell, int index)
+static void mark_facet_dirty(mlim_complex* complex, int32_t cell, int index)
 {
-  int failed = 0;
   for (int k = 1; k < 4; ++k)
   {
-    failed |= mark_dirty(complex, complex->cells[cell].vertices[(index + k) & 3]);
+    mark_dirty(complex, complex->cells[cell].vertices[(index + k) & 3]);
   }
-  return failed;
+}
+
+void mlim_complex_touch_cell(mlim_complex* complex, int32_t cell)
+{
+  for (int k = 0; k < 4; ++k)
+  {
+    mark_dirty(complex, complex->cells[cell].vertices[k]);
+  }
 }
 
 /* Room for a use in every slot is there: free_capacity grows with facet_capacity. */
@@ -283,11 +283,13 @@ static int record_facet(mlim_complex* complex, int32_t cell, int index)
   facet->index = (unsigned char)index;
   facet->is_alive = 1;
   facet->is_multiple = count > 1 || !differs;
+  facet->is_judged = 0;
   facet->is_settled = 0;
   a->facets[index] = record;
   b->facets[index_apart(b, a)] = record;
   complex->fresh[complex->fresh_count++] = record;
-  return mark_facet_dirty(complex, cell, index);
+  mark_facet_dirty(complex, cell, index);
+  return 0;
 }
 
 /* ---- insertion ---- */
@@ -350,9 +352,8 @@ mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex,
 }
 
 /* Records inside the zone die; those on its surface go over to the cell outside. */
-static int empty_zone(mlim_complex* complex)
+static void empty_zone(mlim_complex* complex)
 {
-  int failed = 0;
   const uint32_t stamp = ++complex->stamp;
   for (size_t c = 0; c < complex->zone.count; ++c)
   {
@@ -371,7 +372,7 @@ static int empty_zone(mlim_complex* complex)
       const int32_t other = complex->cells[id].neighbors[k];
       if (complex->cells[other].mark == stamp)
       {
-        failed |= mark_facet_dirty(complex, id, k);
+        mark_facet_dirty(complex, id, k);
         kill_record(complex, record);
         continue;
       }
@@ -384,7 +385,6 @@ static int empty_zone(mlim_complex* complex)
   {
     complex->cells[complex->zone.cells[c]].vertices[0] = -1;
   }
-  return failed;
 }
 
 /* A facet between a new cell and one outside the zone: its record holds unless labels contradict. */
@@ -408,14 +408,10 @@ static int inherit_facet(mlim_complex* complex, int32_t cell, int index)
     a->facets[index] = record;
     return 0;
   }
-  int failed = mark_facet_dirty(complex, cell, index);
+  mark_facet_dirty(complex, cell, index);
   kill_record(complex, record);
   b->facets[j] = 0;
-  if (facet->is_multiple || differs)
-  {
-    failed |= record_facet(complex, cell, index);
-  }
-  return failed;
+  return facet->is_multiple || differs ? record_facet(complex, cell, index) : 0;
 }
 
 static int update_cells(mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex)
@@ -459,13 +455,19 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   }
   if (mlim_reserve(&complex->vertices, &complex->vertex_capacity, complex->vertex_count + 1,
         sizeof *complex->vertices) ||
-      (is_recorded && empty_zone(complex)))
+      mlim_reserve(&complex->dirty, &complex->dirty_capacity, complex->vertex_capacity,
+        sizeof *complex->dirty))
   {
     return mlim_fail_memory(context, "the triangulation");
+  }
+  if (is_recorded)
+  {
+    empty_zone(complex);
   }
   const int32_t vertex = (int32_t)complex->vertex_count++;
   complex->vertices[vertex] = complex->pending;
   complex->vertices[vertex].is_dirty = 0;
+  complex->vertices[vertex].is_broken = 0;
   mlim_delaunay_cells made;
   const mlim_status status = mlim_delaunay_fill(complex->delaunay, context, &made);
   if (status != MLIM_OK || !is_recorded)
@@ -504,6 +506,10 @@ mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_con
     take_cell(complex, &all.cells[k]);
   }
   complex->fresh_count = 0;
+  for (size_t v = 0; v < complex->vertex_count; ++v)
+  {
+    mark_dirty(complex, (int32_t)v); /* a ball without any facet fails too */
+  }
   for (size_t k = 0; k < all.count; ++k)
   {
     const int32_t id = all.cells[k].id;

@@ -37,7 +37,9 @@ typedef struct mlim_vertex
   int32_t ball;     /* index of its ball, -1 */
   mlim_sheet sheet; /* of a surface vertex */
   unsigned char kind;
-  unsigned char is_dirty; /* its star of restricted facets has changed */
+  unsigned char
+    is_dirty; /* its star of restricted facets has changed since the disk was looked at */
+  unsigned char is_broken; /* its disk failed at the last look */
 } mlim_vertex;
 
 typedef struct mlim_cell
@@ -60,7 +62,8 @@ typedef struct mlim_facet
   unsigned char index;
   unsigned char is_alive;
   unsigned char is_multiple; /* crosses more often than the labels of its cells tell */
-  unsigned char is_settled;  /* for whoever looks at each facet once */
+  unsigned char is_judged;   /* for the loop, which looks at each facet once */
+  unsigned char is_settled;  /* for verification, which does so too */
 } mlim_facet;
 
 typedef struct mlim_complex
@@ -105,6 +108,9 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
 /* Labels and records everything that is there. For after a first series of insertions; until then
    commits keep only the cells. `done` is reported as the share of the surface's stage. */
 mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_context* context);
+
+/* Notes that a cell's label was changed from outside: the stars of its vertices are dirty. */
+void mlim_complex_touch_cell(mlim_complex* complex, int32_t cell);
 
 /* The three vertices of facet `index` of a cell, so that its normal points out of the cell. */
 void mlim_complex_facet_vertices(

@@ -10,9 +10,10 @@
 
 enum
 {
-  LOOK_EVERY_BALLS = 256, /* balls inserted between two looks at the host: about 5 ms */
-  REPORT_EVERY = 256,     /* insertions between two looks at the host: about 5 ms */
-  JUDGE_EVERY = 65536     /* facets judged between two looks: about 20 ms */
+  LOOK_EVERY_BALLS = 256,  /* balls inserted between two looks at the host: about 5 ms */
+  REPORT_EVERY = 256,      /* insertions between two looks at the host: about 5 ms */
+  LOOK_EVERY_DISKS = 4096, /* vertices checked between two looks: about 5 ms */
+  JUDGE_EVERY = 65536      /* facets judged between two looks: about 20 ms */
 };
 
 /* ---- start ---- */
@@ -162,14 +163,16 @@ static int is_wanted(const mlim_refinement* r, mlim_badness badness)
   return badness < (r->goal == MLIM_GOAL_TOPOLOGY ? MLIM_BAD_SIZE : MLIM_BAD_NONE);
 }
 
-/* Queues a record if it is bad and can be mended. */
+/* Queues a record if it is bad and can be mended. Its verdict never changes by what is inserted round
+   it: once is enough. */
 static int enqueue(mlim_refinement* r, int32_t record)
 {
-  const mlim_facet* facet = &r->complex.facets[record];
-  if (!facet->is_alive)
+  mlim_facet* facet = &r->complex.facets[record];
+  if (!facet->is_alive || facet->is_judged)
   {
     return 0;
   }
+  facet->is_judged = 1;
   const mlim_verdict verdict = mlim_criteria_judge(&r->complex, r->options, facet);
   if (!is_wanted(r, verdict.badness) ||
       !mlim_criteria_may_insert(&r->complex, r->options, facet, verdict.badness))
@@ -300,6 +303,17 @@ static int compare_ids(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
+/* Not a failure: the vertex's is_broken is up to date, its star is in r->star. */
+static mlim_status check_disk(mlim_refinement* r, int32_t vertex, mlim_context* context)
+{
+  mlim_disk disk;
+  const mlim_status status =
+    mlim_disk_check(&r->complex, &r->links, vertex, &r->star, context, &disk);
+  r->complex.vertices[vertex].is_dirty = 0;
+  r->complex.vertices[vertex].is_broken = disk == MLIM_DISK_FAILS;
+  return status;
+}
+
 /* Checks the vertices whose stars have changed. */
 static mlim_status check_disks(mlim_refinement* r, mlim_context* context)
 {
@@ -309,14 +323,12 @@ static mlim_status check_disks(mlim_refinement* r, mlim_context* context)
   for (size_t k = 0; k < complex->dirty_count && status == MLIM_OK; ++k)
   {
     const int32_t vertex = complex->dirty[k];
-    complex->vertices[vertex].is_dirty = 0;
-    mlim_disk disk;
-    status = mlim_disk_check(complex, &r->links, vertex, &r->star, context, &disk);
-    if (status == MLIM_OK && disk == MLIM_DISK_FAILS && enqueue_star(r, vertex))
+    status = check_disk(r, vertex, context);
+    if (status == MLIM_OK && complex->vertices[vertex].is_broken && enqueue_star(r, vertex))
     {
       status = mlim_fail_memory(context, "the queue of facets");
     }
-    if (status == MLIM_OK && k % 4096 == 4095)
+    if (status == MLIM_OK && k % LOOK_EVERY_DISKS == LOOK_EVERY_DISKS - 1)
     {
       status = mlim_refine_report(r, context);
     }
@@ -325,10 +337,20 @@ static mlim_status check_disks(mlim_refinement* r, mlim_context* context)
   return status;
 }
 
+/* Another goal judges other things. */
+static void set_goal(mlim_refinement* r, mlim_goal goal)
+{
+  for (size_t f = 1; r->goal != goal && f < r->complex.facet_count; ++f)
+  {
+    r->complex.facets[f].is_judged = 0;
+  }
+  r->goal = goal;
+}
+
 mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_context* context)
 {
   mlim_refinement* r = refinement;
-  r->goal = goal;
+  set_goal(r, goal);
   mlim_status status = enqueue_all(r, context);
   /* Each round inserts at least one point or is the last, and the vertex limit bounds the points. */
   while (status == MLIM_OK)
@@ -350,24 +372,45 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
   return status == MLIM_OK ? mlim_refine_report(r, context) : status;
 }
 
-/* ---- what is left ---- */
-
-mlim_status mlim_refine_count_disks(
-  mlim_refinement* refinement, double done, mlim_context* context, size_t* count)
+void mlim_refine_tighten(mlim_refinement* refinement, const unsigned char* is_tightened)
 {
   mlim_complex* complex = &refinement->complex;
-  *count = 0;
-  mlim_status status = MLIM_OK;
-  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count && status == MLIM_OK; ++v)
+  for (size_t f = 1; f < complex->facet_count; ++f)
   {
-    mlim_disk disk;
-    status =
-      mlim_disk_check(complex, &refinement->links, (int32_t)v, &refinement->star, context, &disk);
-    *count += disk == MLIM_DISK_FAILS;
-    if (status == MLIM_OK && v % 4096 == 0)
+    mlim_facet* facet = &complex->facets[f];
+    if (is_tightened[facet->sheet.low] || is_tightened[facet->sheet.high])
+    {
+      facet->is_judged = 0;
+    }
+  }
+}
+
+/* ---- what is left ---- */
+
+mlim_status mlim_refine_settle_disks(
+  mlim_refinement* refinement, double done, mlim_context* context)
+{
+  mlim_complex* complex = &refinement->complex;
+  mlim_status status = MLIM_OK;
+  for (size_t k = 0; k < complex->dirty_count && status == MLIM_OK; ++k)
+  {
+    status = check_disk(refinement, complex->dirty[k], context);
+    if (status == MLIM_OK && k % LOOK_EVERY_DISKS == 0)
     {
       status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, done);
     }
   }
+  complex->dirty_count = 0;
   return status;
+}
+
+size_t mlim_refine_count_broken(const mlim_refinement* refinement)
+{
+  const mlim_complex* complex = &refinement->complex;
+  size_t count = 0;
+  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
+  {
+    count += complex->vertices[v].is_broken;
+  }
+  return count;
 }

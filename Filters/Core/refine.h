@@ -55,9 +55,16 @@ mlim_status mlim_refine_ask(
 /* Tells the host how far refinement is. */
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context);
 
-/* Number of vertices that fail the disk condition. `done` is reported as the share of the
-   certificate's stage. */
-mlim_status mlim_refine_count_disks(
-  mlim_refinement* refinement, double done, mlim_context* context, size_t* count);
+/* The bound on the distance has become tighter at the labels marked (one byte each): their facets are
+   judged again at the next run. */
+void mlim_refine_tighten(mlim_refinement* refinement, const unsigned char* is_tightened);
+
+/* Looks again at the vertices whose stars have changed, so that is_broken tells of every vertex whether
+   it fails the disk condition. `done` is reported as the share of the certificate's stage. */
+mlim_status mlim_refine_settle_disks(
+  mlim_refinement* refinement, double done, mlim_context* context);
+
+/* Number of vertices that fail the disk condition, settled before. */
+size_t mlim_refine_count_broken(const mlim_refinement* refinement);
 
 #endif

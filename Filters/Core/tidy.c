@@ -164,6 +164,7 @@ static size_t mend_strays_from(mlim_complex* complex, int32_t first)
       continue;
     }
     cell->label = label;
+    mlim_complex_touch_cell(complex, id);
     ++changed;
     for (int k = 0; k < 4 && count < MAX_STACK; ++k)
     {
@@ -361,6 +362,10 @@ static size_t mend_part(tidier* t)
     }
   }
   relabel(t, best);
+  for (size_t p = 0; p < t->part_count && best != own; ++p)
+  {
+    mlim_complex_touch_cell(complex, t->part[p]);
+  }
   return best != own ? t->part_count : 0;
 }
 
@@ -432,13 +437,11 @@ static mlim_status mend_from(tidier* t, int32_t vertex, size_t* changed)
 
 static mlim_status mend_disks(tidier* t, size_t* changed)
 {
-  mlim_complex* complex = &t->refinement->complex;
-  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
+  const mlim_complex* complex = &t->refinement->complex;
+  mlim_status status = mlim_refine_settle_disks(t->refinement, 0, t->context);
+  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count && status == MLIM_OK; ++v)
   {
-    mlim_disk disk;
-    mlim_status status =
-      mlim_disk_check(complex, &t->refinement->links, (int32_t)v, &t->star, t->context, &disk);
-    if (status == MLIM_OK && disk == MLIM_DISK_FAILS)
+    if (complex->vertices[v].is_broken || complex->vertices[v].is_dirty)
     {
       status = mend_from(t, (int32_t)v, changed);
     }
@@ -446,12 +449,8 @@ static mlim_status mend_disks(tidier* t, size_t* changed)
     {
       status = mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, 0);
     }
-    if (status != MLIM_OK)
-    {
-      return status;
-    }
   }
-  return MLIM_OK;
+  return status;
 }
 
 /* Tries another label for a cell, then for it and one neighbour of its label together. */

@@ -274,10 +274,14 @@ static mlim_status look_for_volume(const mlim_verification* v, mlim_context* con
   const size_t labels = (size_t)mlim_field_label_count(complex->oracle.field);
   const double target = VOLUME_TARGET * options->volume_tolerance;
   double* volumes = mlim_allocate(labels, sizeof *volumes);
-  if (volumes == NULL)
+  unsigned char* is_tightened = mlim_allocate_zeroed(labels, 1);
+  if (volumes == NULL || is_tightened == NULL)
   {
+    mlim_release(volumes);
+    mlim_release(is_tightened);
     return mlim_fail_memory(context, "the volumes of the labels");
   }
+  const size_t before = *count;
   mlim_volumes_of_complex(complex, volumes);
   for (size_t l = 0; l < labels; ++l)
   {
@@ -291,10 +295,16 @@ static mlim_status look_for_volume(const mlim_verification* v, mlim_context* con
     if (lost > target && complex->distance_shares[l] > least)
     {
       complex->distance_shares[l] *= mlim_max(MOST_TIGHTENING, 0.9 * target / lost);
+      is_tightened[l] = 1;
       ++*count;
     }
   }
+  if (*count > before)
+  {
+    mlim_refine_tighten(v->refinement, is_tightened);
+  }
   mlim_release(volumes);
+  mlim_release(is_tightened);
   return MLIM_OK;
 }
 
