@@ -4,173 +4,230 @@
 #include "status.h"
 
 #include <limits.h>
+#include <string.h>
 
-static int32_t root_of(int32_t* parent, int32_t p)
+enum
 {
-  while (parent[p] != p)
+  LOOK_EVERY_SLICES = 16 /* slices of grid points between two looks at the host */
+};
+
+/* Grid points of one label next to each other in a row along x: there are far fewer of them than of
+   points. */
+typedef struct run
+{
+  int32_t begin, end; /* x of the first point, and past the last */
+  int32_t label;
+  int32_t parent; /* a run of the same component, itself at the root; later -1 - component */
+} run;
+
+typedef struct run_list
+{
+  run* runs;
+  size_t count, capacity;
+  size_t* rows; /* first run of each row, and past the last */
+} run_list;
+
+static int32_t root_of(run* runs, int32_t r)
+{
+  while (runs[r].parent != r)
   {
-    parent[p] = parent[parent[p]];
-    p = parent[p];
+    runs[r].parent = runs[runs[r].parent].parent;
+    r = runs[r].parent;
   }
-  return p;
+  return r;
 }
 
-static void join(int32_t* parent, int32_t a, int32_t b)
+/* The lower one becomes the root. */
+static void join(run* runs, int32_t a, int32_t b)
 {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  parent[a < b ? b : a] = a < b ? a : b;
+  a = root_of(runs, a);
+  b = root_of(runs, b);
+  runs[a < b ? b : a].parent = a < b ? a : b;
 }
 
-/* Provisional components, joined through the 13 earlier neighbours of each point. A point whose
-   left neighbour has its label needs to look only at those that the left one does not touch. */
-static int32_t scan(const mlim_field* field, int32_t* of_point, int32_t* parent)
+/* Not 0: out of memory. */
+static int add_row(run_list* list, const uint16_t* labels, int32_t count)
+{
+  for (int32_t x = 0; x < count;)
+  {
+    int32_t end = x + 1;
+    while (end < count && labels[end] == labels[x])
+    {
+      ++end;
+    }
+    if (mlim_reserve(&list->runs, &list->capacity, list->count + 1, sizeof *list->runs))
+    {
+      return 1;
+    }
+    list->runs[list->count] =
+      (run){ .begin = x, .end = end, .label = labels[x], .parent = (int32_t)list->count };
+    ++list->count;
+    x = end;
+  }
+  return 0;
+}
+
+static void join_if_alike(run* runs, size_t a, size_t b)
+{
+  if (runs[a].label == runs[b].label)
+  {
+    join(runs, (int32_t)a, (int32_t)b);
+  }
+}
+
+/* Joins the runs of two rows that touch each other, also by a corner. Both rows are full, so a run that
+   ends first touches no later one, except at equal ends, where it touches the next one by a corner. */
+static void join_rows(run_list* list, size_t row, size_t other)
+{
+  run* runs = list->runs;
+  size_t a = list->rows[row];
+  size_t b = list->rows[other];
+  while (a < list->rows[row + 1] && b < list->rows[other + 1])
+  {
+    join_if_alike(runs, a, b);
+    if (runs[a].end > runs[b].end)
+    {
+      ++b;
+      continue;
+    }
+    if (runs[a].end == runs[b].end && b + 1 < list->rows[other + 1])
+    {
+      join_if_alike(runs, a, b + 1);
+    }
+    ++a;
+  }
+}
+
+/* The rows of a slice, each joined with the four earlier ones beside it. Not 0: out of memory. */
+static int scan_slice(const mlim_field* field, int32_t z, run_list* list)
 {
   const int32_t* dims = mlim_field_grid_of(field)->dims;
-  const int64_t nx = dims[0];
-  const int64_t ny = dims[1];
   const uint16_t* labels = mlim_field_point_labels(field);
-  int32_t made = 0;
-  int64_t at = 0;
-  for (int32_t z = 0; z < dims[2]; ++z)
+  for (int32_t y = 0; y < dims[1]; ++y)
   {
-    for (int32_t y = 0; y < dims[1]; ++y)
+    const size_t row = (size_t)y + (size_t)dims[1] * (size_t)z;
+    if (add_row(list, labels + row * (size_t)dims[0], dims[0]))
     {
-      int32_t before = -1;
-      for (int32_t x = 0; x < dims[0]; ++x, ++at)
+      return 1;
+    }
+    list->rows[row + 1] = list->count;
+    for (int32_t k = -1; k <= 1 && z > 0; ++k)
+    {
+      if (y + k >= 0 && y + k < dims[1])
       {
-        const int32_t label = labels[at];
-        const int is_run = x > 0 && label == before;
-        int32_t mine = is_run ? of_point[at - 1] : -1;
-        before = label;
-        const int32_t rows[4][2] = { { -1, -1 }, { 0, -1 }, { 1, -1 }, { -1, 0 } };
-        for (int r = 0; r < 4; ++r)
-        {
-          const int32_t oy = y + rows[r][0];
-          const int32_t oz = z + rows[r][1];
-          if (oy < 0 || oy >= dims[1] || oz < 0)
-          {
-            continue;
-          }
-          for (int32_t ox = is_run ? x + 1 : x > 0 ? x - 1 : x; ox <= x + 1 && ox < dims[0]; ++ox)
-          {
-            if (labels[ox + nx * (oy + ny * (int64_t)oz)] != label)
-            {
-              continue;
-            }
-            const int32_t other = of_point[ox + nx * (oy + ny * (int64_t)oz)];
-            if (mine < 0)
-            {
-              mine = other;
-            }
-            else if (mine != other)
-            {
-              join(parent, mine, other);
-            }
-          }
-        }
-        if (mine < 0)
-        {
-          mine = made++;
-          parent[mine] = mine;
-        }
-        of_point[at] = mine;
+        join_rows(list, row, (size_t)((int64_t)row - dims[1] + k));
       }
     }
+    if (y > 0)
+    {
+      join_rows(list, row, row - 1);
+    }
   }
-  return made;
+  return 0;
 }
 
-static void measure(const mlim_field* field, mlim_components* out)
+/* Numbers the components in the order of their first runs: a root comes before the rest of its tree. */
+static size_t number_runs(run_list* list)
 {
-  const int32_t* dims = mlim_field_grid_of(field)->dims;
-  int64_t at = 0;
-  for (int32_t z = 0; z < dims[2]; ++z)
+  int32_t count = 0;
+  for (size_t r = 0; r < list->count; ++r)
   {
-    for (int32_t y = 0; y < dims[1]; ++y)
+    int32_t root = (int32_t)r;
+    while (list->runs[root].parent >= 0 && list->runs[root].parent != root)
     {
-      for (int32_t x = 0; x < dims[0]; ++x, ++at)
+      root = list->runs[root].parent;
+    }
+    const int32_t number = list->runs[root].parent;
+    list->runs[r].parent = number < 0 ? number : -1 - count++;
+  }
+  return (size_t)count;
+}
+
+/* Lets a component reach as far as a run does; the first of equals stays. */
+static void extend(mlim_component* c, const run* r, int32_t y, int32_t z)
+{
+  for (int side = 0; side < 6; ++side)
+  {
+    const int32_t point[3] = { side == 1 ? r->end - 1 : r->begin, y, z };
+    const int32_t here = point[side >> 1];
+    const int32_t there = c->extremes[side][side >> 1];
+    if (c->voxel_count == 0 || (side & 1 ? here > there : here < there))
+    {
+      memcpy(c->extremes[side], point, sizeof point);
+    }
+  }
+  c->label = r->label;
+  c->voxel_count += (size_t)(r->end - r->begin);
+}
+
+static void measure(const mlim_field_grid* grid, const run_list* list, mlim_components* out)
+{
+  const size_t nx = (size_t)grid->dims[0];
+  const size_t ny = (size_t)grid->dims[1];
+  for (size_t row = 0; row < ny * (size_t)grid->dims[2]; ++row)
+  {
+    for (size_t k = list->rows[row]; k < list->rows[row + 1]; ++k)
+    {
+      const run* r = &list->runs[k];
+      const int32_t number = -1 - r->parent;
+      extend(&out->components[number], r, (int32_t)(row % ny), (int32_t)(row / ny));
+      for (int32_t x = r->begin; x < r->end; ++x)
       {
-        const int32_t point[3] = { x, y, z };
-        mlim_component* c = &out->components[out->of_point[at]];
-        const int is_first = c->voxel_count == 0;
-        ++c->voxel_count;
-        if (is_first)
-        {
-          c->label = mlim_field_point_label(field, point);
-        }
-        for (int side = 0; side < 6; ++side)
-        {
-          const int32_t here = point[side >> 1];
-          const int32_t there = c->extremes[side][side >> 1];
-          if (is_first || (side & 1 ? here > there : here < there))
-          {
-            for (int k = 0; k < 3; ++k)
-            {
-              c->extremes[side][k] = point[k];
-            }
-          }
-        }
+        out->of_point[row * nx + (size_t)x] = number;
       }
     }
   }
+}
+
+static mlim_status scan(const mlim_field* field, mlim_context* context, run_list* list)
+{
+  const int32_t* dims = mlim_field_grid_of(field)->dims;
+  mlim_status status = MLIM_OK;
+  for (int32_t z = 0; z < dims[2] && status == MLIM_OK; ++z)
+  {
+    if (scan_slice(field, z, list))
+    {
+      return mlim_fail_memory(context, "the components of the labels");
+    }
+    status = z % LOOK_EVERY_SLICES == 0 ? mlim_progress(context, MLIM_STAGE_SURFACE, 0) : MLIM_OK;
+  }
+  return status;
 }
 
 mlim_status mlim_components_find(
   const mlim_field* field, mlim_context* context, mlim_components* out)
 {
   *out = (mlim_components){ 0 };
-  const int32_t* dims = mlim_field_grid_of(field)->dims;
-  const size_t points = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
+  const mlim_field_grid* grid = mlim_field_grid_of(field);
+  const size_t rows = (size_t)grid->dims[1] * (size_t)grid->dims[2];
+  const size_t points = rows * (size_t)grid->dims[0];
   if (points > INT32_MAX)
   {
     return mlim_fail(context, MLIM_INVALID_ARGUMENT,
       "The image has %zu points; components can be told apart in at most %d.", points, INT_MAX);
   }
-  mlim_status status = MLIM_OK;
-  int32_t* parent = mlim_allocate(points, sizeof *parent);
+  run_list list = { .rows = mlim_allocate_zeroed(rows + 1, sizeof *list.rows) };
   out->of_point = mlim_allocate(points, sizeof *out->of_point);
-  if (parent == NULL || out->of_point == NULL)
+  mlim_status status = list.rows == NULL || out->of_point == NULL
+                         ? mlim_fail_memory(context, "the components of the labels")
+                         : scan(field, context, &list);
+  if (status == MLIM_OK)
   {
-    status = mlim_fail_memory(context, "the components of the labels");
-    goto done;
+    out->count = number_runs(&list);
+    out->components = mlim_allocate_zeroed(out->count, sizeof *out->components);
+    status =
+      out->components == NULL ? mlim_fail_memory(context, "the components of the labels") : MLIM_OK;
   }
-  const int32_t made = scan(field, out->of_point, parent);
-  status = mlim_progress(context, MLIM_STAGE_SURFACE, 0);
-  if (status != MLIM_OK)
+  if (status == MLIM_OK)
   {
-    goto done;
+    measure(grid, &list, out);
   }
-  int32_t count = 0;
-  /* A root is the lowest of its tree, so it has its number, stored as -1 - number, before any other
-     member asks for it. */
-  for (int32_t p = 0; p < made; ++p)
-  {
-    int32_t root = p;
-    while (parent[root] >= 0 && parent[root] != root)
-    {
-      root = parent[root];
-    }
-    parent[p] = parent[root] < 0 ? parent[root] : -1 - count++;
-  }
-  for (size_t i = 0; i < points; ++i)
-  {
-    out->of_point[i] = -1 - parent[out->of_point[i]];
-  }
-  out->count = (size_t)count;
-  out->components = mlim_allocate_zeroed(out->count, sizeof *out->components);
-  if (out->components == NULL)
-  {
-    status = mlim_fail_memory(context, "the components of the labels");
-    goto done;
-  }
-  measure(field, out);
-done:
-  mlim_release(parent);
-  if (status != MLIM_OK)
+  else
   {
     mlim_components_free(out);
   }
+  mlim_release(list.rows);
+  mlim_release(list.runs);
   return status;
 }
 

@@ -11,11 +11,10 @@ typedef struct volume_job
 {
   const mlim_field* field;
   size_t label_count;
-  double* volumes; /* label_count a slice of cells */
+  size_t* eighths; /* of cells; label_count a slice of cells */
 } volume_job;
 
-static void add_mixed_cell(
-  const mlim_field* field, const int32_t cell[3], double part, double* volumes)
+static void add_mixed_cell(const mlim_field* field, const int32_t cell[3], size_t* eighths)
 {
   const double* spacing = field->grid.spacing;
   for (int c = 0; c < 8; ++c)
@@ -23,32 +22,41 @@ static void add_mixed_cell(
     const double at[3] = { (cell[0] + (c & 1 ? 0.75 : 0.25)) * spacing[0],
       (cell[1] + (c & 2 ? 0.75 : 0.25)) * spacing[1],
       (cell[2] + (c & 4 ? 0.75 : 0.25)) * spacing[2] };
-    volumes[mlim_field_label(field, at)] += part;
+    ++eighths[mlim_field_label(field, at)];
   }
+}
+
+/* Cells from a uniform one on, along x, that are known to be like it: as many as stay within reach of
+   its clearance. */
+static int32_t count_alike(const mlim_field* field, const int32_t cell[3], int clearance)
+{
+  const int32_t left = field->grid.cells[0] - cell[0];
+  return clearance < left ? clearance : left;
 }
 
 static void volume_body(void* data, size_t begin, size_t end)
 {
   const volume_job* job = (const volume_job*)data;
   const mlim_field_grid* grid = &job->field->grid;
-  const double whole = grid->spacing[0] * grid->spacing[1] * grid->spacing[2];
   for (size_t z = begin; z < end; ++z)
   {
-    double* volumes = job->volumes + z * job->label_count;
+    size_t* eighths = job->eighths + z * job->label_count;
     int32_t cell[3] = { 0, 0, (int32_t)z };
     for (cell[1] = 0; cell[1] < grid->cells[1]; ++cell[1])
     {
-      for (cell[0] = 0; cell[0] < grid->cells[0]; ++cell[0])
+      int32_t count = 1;
+      for (cell[0] = 0; cell[0] < grid->cells[0]; cell[0] += count)
       {
-        const uint32_t word = field_cell_word(job->field, cell, NULL);
+        int clearance;
+        const uint32_t word = field_cell_word(job->field, cell, &clearance);
+        count = 1;
         if (word & (uint32_t)MIXED)
         {
-          add_mixed_cell(job->field, cell, whole / 8, volumes);
+          add_mixed_cell(job->field, cell, eighths);
+          continue;
         }
-        else
-        {
-          volumes[word] += whole;
-        }
+        count = clearance > 1 ? count_alike(job->field, cell, clearance) : 1;
+        eighths[word] += 8 * (size_t)count;
       }
     }
   }
@@ -70,27 +78,28 @@ mlim_status mlim_volumes_of_field(
 {
   const size_t labels = (size_t)mlim_field_label_count(field);
   const size_t slices = (size_t)mlim_field_grid_of(field)->cells[2];
-  memset(volumes, 0, labels * sizeof *volumes);
   memset(voxels, 0, labels * sizeof *voxels);
-  /* A sum a slice, added up in order: the result must not depend on the threads. */
-  double* sums =
-    labels < SIZE_MAX / slices ? mlim_allocate_zeroed(labels * slices, sizeof *sums) : NULL;
-  if (sums == NULL)
+  size_t* eighths =
+    labels < SIZE_MAX / slices ? mlim_allocate_zeroed(labels * slices, sizeof *eighths) : NULL;
+  if (eighths == NULL)
   {
     return mlim_fail_memory(context, "the volumes of the labels");
   }
-  volume_job job = { .field = field, .label_count = labels, .volumes = sums };
+  volume_job job = { .field = field, .label_count = labels, .eighths = eighths };
   const mlim_status status = mlim_parallel_stage(
     context, &(mlim_stage_work){
                .count = slices, .body = volume_body, .job = &job, .stage = MLIM_STAGE_SURFACE });
-  for (size_t z = 0; z < slices; ++z)
+  const double* spacing = mlim_field_grid_of(field)->spacing;
+  for (size_t l = 0; l < labels; ++l)
   {
-    for (size_t l = 0; l < labels; ++l)
+    size_t sum = 0;
+    for (size_t z = 0; z < slices; ++z)
     {
-      volumes[l] += sums[z * labels + l];
+      sum += eighths[z * labels + l];
     }
+    volumes[l] = (double)sum / 8 * (spacing[0] * spacing[1] * spacing[2]);
   }
-  mlim_release(sums);
+  mlim_release(eighths);
   count_voxels(field, voxels);
   return status;
 }
