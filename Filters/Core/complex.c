@@ -469,7 +469,8 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   complex->vertices[vertex].is_dirty = 0;
   complex->vertices[vertex].is_broken = 0;
   mlim_delaunay_cells made;
-  const mlim_status status = mlim_delaunay_fill(complex->delaunay, context, &made);
+  const mlim_status status =
+    mlim_delaunay_fill(complex->delaunay, context, is_recorded ? &made : NULL);
   if (status != MLIM_OK || !is_recorded)
   {
     return status;

@@ -62,7 +62,8 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
   int32_t start, mlim_delaunay_start kind, mlim_context* context, mlim_delaunay_zone* out);
 
 /* Second half: inserts the point of the last find. Its vertex has the next id. Cells of the zone
-   are dead and their ids may be used again by the new cells, all of which have the new vertex. */
+   are dead and their ids may be used again by the new cells, all of which have the new vertex.
+   out == NULL: the cells are not asked for, which saves the time for their centres. */
 mlim_status mlim_delaunay_fill(
   mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_cells* out);
 

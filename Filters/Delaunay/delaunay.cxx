@@ -6,6 +6,7 @@ extern "C" {
 #include "delaunay.h"
 #include "status.h"
 }
+#include "power_sphere.h"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -55,11 +56,11 @@ class Triangulation : public Regular
   }
 
 public:
-  // Everything that the point conflicts with, from a cell that does.
-  void Conflicts(const Weighted& point, CellHandle start, std::vector<Facet>& boundary,
+  // Everything that the point conflicts with, from a cell that does. `test` says whether a cell does.
+  template <typename Test>
+  void Conflicts(CellHandle start, const Test& test, std::vector<Facet>& boundary,
     std::vector<CellHandle>& cells) const
   {
-    auto test = [this, &point](CellHandle c) { return this->in_conflict_3(point, c); };
     Tr_Base::find_conflicts(start, test,
       CGAL::make_triple(
         std::back_inserter(boundary), std::back_inserter(cells), CGAL::Emptyset_iterator()));
@@ -104,58 +105,41 @@ public:
   }
 };
 
-// Weighted circumcentre. Below this squared ratio of volume to edge lengths the plain formula loses
-// more than five of its sixteen digits, and exact arithmetic takes over.
-constexpr double FLAT = 1e-22;
-
-void PowerCenter(CellHandle cell, double out[3])
+// Weighted circumcentre of a flat cell.
+void ExactCenter(CellHandle cell, double out[3])
 {
-  const Weighted& p0 = cell->vertex(0)->point();
-  double edge[3][3];
-  double right[3];
-  double product = 1;
-  for (int k = 0; k < 3; ++k)
+  using ExactPoint = Exact::Weighted_point_3;
+  auto exact = [cell](int k)
   {
-    const Weighted& p = cell->vertex(k + 1)->point();
-    edge[k][0] = p.x() - p0.x();
-    edge[k][1] = p.y() - p0.y();
-    edge[k][2] = p.z() - p0.z();
-    const double squared =
-      edge[k][0] * edge[k][0] + edge[k][1] * edge[k][1] + edge[k][2] * edge[k][2];
-    right[k] = squared - p.weight() + p0.weight();
-    product *= squared;
-  }
-  double normal[3][3];
-  for (int k = 0; k < 3; ++k)
+    const Weighted& p = cell->vertex(k)->point();
+    return ExactPoint(Exact::Point_3(p.x(), p.y(), p.z()), p.weight());
+  };
+  const Exact::Point_3 center =
+    Exact().construct_weighted_circumcenter_3_object()(exact(0), exact(1), exact(2), exact(3));
+  out[0] = CGAL::to_double(center.x());
+  out[1] = CGAL::to_double(center.y());
+  out[2] = CGAL::to_double(center.z());
+}
+
+// The centre is exact where the plain formula is not good enough; then the sphere decides nothing.
+mlim_power_sphere PowerSphere(CellHandle cell)
+{
+  double points[4][3];
+  double weights[4];
+  for (int k = 0; k < 4; ++k)
   {
-    const double* a = edge[(k + 1) % 3];
-    const double* b = edge[(k + 2) % 3];
-    normal[k][0] = a[1] * b[2] - a[2] * b[1];
-    normal[k][1] = a[2] * b[0] - a[0] * b[2];
-    normal[k][2] = a[0] * b[1] - a[1] * b[0];
+    const Weighted& p = cell->vertex(k)->point();
+    points[k][0] = p.x();
+    points[k][1] = p.y();
+    points[k][2] = p.z();
+    weights[k] = p.weight();
   }
-  const double volume =
-    edge[0][0] * normal[0][0] + edge[0][1] * normal[0][1] + edge[0][2] * normal[0][2];
-  if (!(volume > 0) || volume * volume < FLAT * product)
+  mlim_power_sphere sphere;
+  if (!mlim_power_sphere_make(points, weights, &sphere))
   {
-    using ExactPoint = Exact::Weighted_point_3;
-    auto exact = [](const Weighted& p)
-    { return ExactPoint(Exact::Point_3(p.x(), p.y(), p.z()), p.weight()); };
-    const Exact::Point_3 center =
-      Exact().construct_weighted_circumcenter_3_object()(exact(p0), exact(cell->vertex(1)->point()),
-        exact(cell->vertex(2)->point()), exact(cell->vertex(3)->point()));
-    out[0] = CGAL::to_double(center.x());
-    out[1] = CGAL::to_double(center.y());
-    out[2] = CGAL::to_double(center.z());
-    return;
+    ExactCenter(cell, sphere.center);
   }
-  const double base[3] = { p0.x(), p0.y(), p0.z() };
-  for (int k = 0; k < 3; ++k)
-  {
-    out[k] =
-      base[k] +
-      0.5 * (right[0] * normal[0][k] + right[1] * normal[1][k] + right[2] * normal[2][k]) / volume;
-  }
+  return sphere;
 }
 
 // A second point at a vertex's place would be hidden, or hide it; CGAL does not expect to be asked.
@@ -198,8 +182,9 @@ mlim_status Guard(mlim_context* context, Function&& function)
 struct mlim_delaunay
 {
   Triangulation triangulation;
-  std::vector<CellHandle> cells; // by id; stale where the id is free
-  std::vector<int32_t> free;     // ids, last in first out
+  std::vector<CellHandle> cells;          // by id; stale where the id is free
+  std::vector<mlim_power_sphere> spheres; // by id
+  std::vector<int32_t> free;              // ids, last in first out
   int32_t vertex_count = 0;
   double far[MLIM_FAR_VERTICES][3];
 
@@ -208,6 +193,8 @@ struct mlim_delaunay
   std::vector<Facet> boundary;
   std::vector<CellHandle> zone;
   bool has_zone = false;
+  std::vector<uint32_t> kept; // a vertex: the last stamp with which it was seen on a boundary
+  uint32_t stamp = 0;
 
   // What the C side borrows.
   std::vector<int32_t> dead;
@@ -220,44 +207,62 @@ struct mlim_delaunay
     {
       cell->info() = static_cast<int32_t>(this->cells.size());
       this->cells.push_back(cell);
-      return;
+      this->spheres.emplace_back();
     }
-    cell->info() = this->free.back();
-    this->free.pop_back();
-    this->cells[static_cast<size_t>(cell->info())] = cell;
+    else
+    {
+      cell->info() = this->free.back();
+      this->free.pop_back();
+      this->cells[static_cast<size_t>(cell->info())] = cell;
+    }
+    mlim_power_sphere_clear(&this->spheres[static_cast<size_t>(cell->info())]);
   }
 
-  mlim_delaunay_cell Describe(CellHandle cell) const
+  // The sphere decides if it can, else exact arithmetic.
+  bool IsInConflict(CellHandle cell) const
+  {
+    const int32_t id = cell->info();
+    const double point[3] = { this->point.x(), this->point.y(), this->point.z() };
+    const int side = id == MLIM_NO_CELL
+                       ? 0
+                       : mlim_power_sphere_side(
+                           &this->spheres[static_cast<size_t>(id)], point, this->point.weight());
+    return side == 0 ? this->triangulation.IsInConflict(this->point, cell) : side < 0;
+  }
+
+  mlim_delaunay_cell Describe(CellHandle cell)
   {
     mlim_delaunay_cell out;
     out.id = cell->info();
+    mlim_power_sphere& sphere = this->spheres[static_cast<size_t>(out.id)];
+    sphere = PowerSphere(cell);
+    std::copy_n(sphere.center, 3, out.center);
     for (int k = 0; k < 4; ++k)
     {
       out.vertices[k] = cell->vertex(k)->info();
       CellHandle n = cell->neighbor(k);
       out.neighbors[k] = this->triangulation.is_infinite(n) ? MLIM_NO_CELL : n->info();
     }
-    PowerCenter(cell, out.center);
     return out;
   }
 
   // A vertex of dead cells that is on no boundary facet would vanish.
-  bool HidesVertex() const
+  bool HidesVertex()
   {
-    std::vector<int32_t> kept;
+    this->kept.resize(static_cast<size_t>(this->vertex_count), 0);
+    ++this->stamp;
     for (const Facet& f : this->boundary)
     {
       for (int k = 1; k < 4; ++k)
       {
-        kept.push_back(f.first->vertex((f.second + k) & 3)->info());
+        this->kept[static_cast<size_t>(f.first->vertex((f.second + k) & 3)->info())] = this->stamp;
       }
     }
-    std::sort(kept.begin(), kept.end());
     for (CellHandle c : this->zone)
     {
       for (int k = 0; k < 4; ++k)
       {
-        if (!std::binary_search(kept.begin(), kept.end(), c->vertex(k)->info()))
+        if (this->kept[static_cast<size_t>(c->vertex(k)->info())] != this->stamp)
         {
           return true;
         }
@@ -296,6 +301,10 @@ struct mlim_delaunay
       VertexHandle v = this->triangulation.insert(
         Weighted(Point(this->far[k][0], this->far[k][1], this->far[k][2]), 0));
       v->info() = this->vertex_count++;
+    }
+    for (CellHandle c : this->triangulation.all_cell_handles())
+    {
+      c->info() = MLIM_NO_CELL;
     }
     for (CellHandle c : this->triangulation.finite_cell_handles())
     {
@@ -366,12 +375,14 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
         from = t.locate(delaunay->point, type, i, j, from);
       }
       if (from == CellHandle() || t.is_infinite(from) || HasPoint(from, delaunay->point) ||
-          !t.IsInConflict(delaunay->point, from))
+          !delaunay->IsInConflict(from))
       {
         return MLIM_OK;
       }
       delaunay->has_zone = true;
-      t.Conflicts(delaunay->point, from, delaunay->boundary, delaunay->zone);
+      t.Conflicts(
+        from, [delaunay](CellHandle c) { return delaunay->IsInConflict(c); }, delaunay->boundary,
+        delaunay->zone);
       const bool is_out = std::any_of(delaunay->zone.begin(), delaunay->zone.end(),
         [&t](CellHandle c) { return t.is_infinite(c); });
       if (is_out || (weight > 0 && delaunay->HidesVertex()))
@@ -391,7 +402,10 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
 mlim_status mlim_delaunay_fill(
   mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_cells* out)
 {
-  *out = {};
+  if (out != nullptr)
+  {
+    *out = {};
+  }
   if (!delaunay->has_zone)
   {
     return mlim_fail(context, MLIM_INTERNAL, "A point was inserted without its zone.");
@@ -418,12 +432,18 @@ mlim_status mlim_delaunay_fill(
       }
       for (const auto& o : delaunay->outer)
       {
-        delaunay->made.push_back(delaunay->Describe(o.first->neighbor(o.second)));
+        if (out != nullptr)
+        {
+          delaunay->made.push_back(delaunay->Describe(o.first->neighbor(o.second)));
+        }
       }
       delaunay->boundary.clear();
       delaunay->zone.clear();
       delaunay->dead.clear();
-      *out = { delaunay->made.size(), delaunay->made.data() };
+      if (out != nullptr)
+      {
+        *out = { delaunay->made.size(), delaunay->made.data() };
+      }
       return MLIM_OK;
     });
 }
