@@ -33,7 +33,12 @@ using Point = Kernel::Point_3;
 using Weighted = Kernel::Weighted_point_3;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<int32_t, Kernel,
   CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
-using CellBase = CGAL::Triangulation_cell_base_with_info_3<int32_t, Kernel,
+struct CellInfo
+{
+  int32_t id; // MLIM_NO_CELL: beyond the far vertices
+  mlim_power_sphere sphere;
+};
+using CellBase = CGAL::Triangulation_cell_base_with_info_3<CellInfo, Kernel,
   CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
     CGAL::Discard_hidden_points>>;
 using Structure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase>;
@@ -182,9 +187,8 @@ mlim_status Guard(mlim_context* context, Function&& function)
 struct mlim_delaunay
 {
   Triangulation triangulation;
-  std::vector<CellHandle> cells;          // by id; stale where the id is free
-  std::vector<mlim_power_sphere> spheres; // by id
-  std::vector<int32_t> free;              // ids, last in first out
+  std::vector<CellHandle> cells; // by id; stale where the id is free
+  std::vector<int32_t> free;     // ids, last in first out
   int32_t vertex_count = 0;
   double far[MLIM_FAR_VERTICES][3];
 
@@ -205,43 +209,37 @@ struct mlim_delaunay
   {
     if (this->free.empty())
     {
-      cell->info() = static_cast<int32_t>(this->cells.size());
+      cell->info().id = static_cast<int32_t>(this->cells.size());
       this->cells.push_back(cell);
-      this->spheres.emplace_back();
     }
     else
     {
-      cell->info() = this->free.back();
+      cell->info().id = this->free.back();
       this->free.pop_back();
-      this->cells[static_cast<size_t>(cell->info())] = cell;
+      this->cells[static_cast<size_t>(cell->info().id)] = cell;
     }
-    mlim_power_sphere_clear(&this->spheres[static_cast<size_t>(cell->info())]);
+    mlim_power_sphere_clear(&cell->info().sphere);
   }
 
   // The sphere decides if it can, else exact arithmetic.
   bool IsInConflict(CellHandle cell) const
   {
-    const int32_t id = cell->info();
     const double point[3] = { this->point.x(), this->point.y(), this->point.z() };
-    const int side = id == MLIM_NO_CELL
-                       ? 0
-                       : mlim_power_sphere_side(
-                           &this->spheres[static_cast<size_t>(id)], point, this->point.weight());
+    const int side = mlim_power_sphere_side(&cell->info().sphere, point, this->point.weight());
     return side == 0 ? this->triangulation.IsInConflict(this->point, cell) : side < 0;
   }
 
   mlim_delaunay_cell Describe(CellHandle cell)
   {
     mlim_delaunay_cell out;
-    out.id = cell->info();
-    mlim_power_sphere& sphere = this->spheres[static_cast<size_t>(out.id)];
-    sphere = PowerSphere(cell);
-    std::copy_n(sphere.center, 3, out.center);
+    out.id = cell->info().id;
+    cell->info().sphere = PowerSphere(cell);
+    std::copy_n(cell->info().sphere.center, 3, out.center);
     for (int k = 0; k < 4; ++k)
     {
       out.vertices[k] = cell->vertex(k)->info();
       CellHandle n = cell->neighbor(k);
-      out.neighbors[k] = this->triangulation.is_infinite(n) ? MLIM_NO_CELL : n->info();
+      out.neighbors[k] = this->triangulation.is_infinite(n) ? MLIM_NO_CELL : n->info().id;
     }
     return out;
   }
@@ -304,7 +302,8 @@ struct mlim_delaunay
     }
     for (CellHandle c : this->triangulation.all_cell_handles())
     {
-      c->info() = MLIM_NO_CELL;
+      c->info().id = MLIM_NO_CELL;
+      mlim_power_sphere_clear(&c->info().sphere);
     }
     for (CellHandle c : this->triangulation.finite_cell_handles())
     {
@@ -392,7 +391,7 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
       }
       for (CellHandle c : delaunay->zone)
       {
-        delaunay->dead.push_back(c->info());
+        delaunay->dead.push_back(c->info().id);
       }
       *out = { delaunay->dead.size(), delaunay->dead.data() };
       return MLIM_OK;
