@@ -4,6 +4,7 @@
 #include "status.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum
 {
@@ -56,61 +57,71 @@ void mlim_star_free(mlim_star* star)
 
 /* ---- the star ---- */
 
-static int push(int32_t** array, size_t* count, size_t* capacity, int32_t value)
+/* Room for all that one more cell may add. Not 0: out of memory. */
+static int reserve(mlim_star* star)
 {
-  if (*count == *capacity && mlim_reserve(array, capacity, *count + 1, sizeof **array))
-  {
-    return 1;
-  }
-  (*array)[(*count)++] = value;
-  return 0;
+  return mlim_reserve(
+           &star->cells, &star->cell_capacity, star->cell_count + 3, sizeof *star->cells) ||
+         mlim_reserve(
+           &star->edges, &star->edge_capacity, star->edge_count + 6, sizeof *star->edges) ||
+         mlim_reserve(
+           &star->facets, &star->facet_capacity, star->facet_count + 3, sizeof *star->facets);
 }
 
-static int visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_star* star)
+/* Each facet of the star is seen from its two cells and taken from the one with the lower id. */
+static void visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_star* star)
 {
-  int failed = 0;
+  const mlim_cell* cell = &complex->cells[id];
   for (int k = 0; k < 4; ++k)
   {
-    const mlim_cell* cell = &complex->cells[id];
-    const int32_t other = cell->neighbors[k];
-    if (cell->vertices[k] == vertex || other == MLIM_NO_CELL)
+    const int32_t n = cell->neighbors[k];
+    if (cell->vertices[k] == vertex || n == MLIM_NO_CELL)
     {
       continue;
     }
-    if (cell->facets[k] != 0 && id < other)
+    mlim_cell* other = &complex->cells[n];
+    if (other->mark != complex->stamp)
     {
-      failed |= push(&star->facets, &star->facet_count, &star->facet_capacity, cell->facets[k]);
+      other->mark = complex->stamp;
+      star->cells[star->cell_count++] = n;
     }
-    if (complex->cells[other].label != cell->label && id < other)
+    if (id > n)
     {
-      for (int j = 0; j < 4; ++j)
+      continue;
+    }
+    if (cell->facets[k] != 0)
+    {
+      star->facets[star->facet_count++] = cell->facets[k];
+    }
+    for (int j = 0; j < 4 && other->label != cell->label; ++j)
+    {
+      if (j != k && cell->vertices[j] != vertex)
       {
-        if (j != k && cell->vertices[j] != vertex)
-        {
-          failed |= push(&star->edges, &star->edge_count, &star->edge_capacity, cell->vertices[j]);
-        }
+        star->edges[star->edge_count++] = cell->vertices[j];
       }
     }
-    if (complex->cells[other].mark != complex->stamp)
-    {
-      complex->cells[other].mark = complex->stamp;
-      failed |= push(&star->cells, &star->cell_count, &star->cell_capacity, other);
-    }
   }
-  return failed;
 }
 
 static int gather(mlim_complex* complex, int32_t vertex, mlim_star* star)
 {
   star->cell_count = star->edge_count = star->facet_count = 0;
+  if (reserve(star))
+  {
+    return 1;
+  }
   const int32_t first = complex->vertices[vertex].cell;
   complex->cells[first].mark = ++complex->stamp;
-  int failed = push(&star->cells, &star->cell_count, &star->cell_capacity, first);
-  for (size_t c = 0; c < star->cell_count && !failed; ++c)
+  star->cells[star->cell_count++] = first;
+  for (size_t c = 0; c < star->cell_count; ++c)
   {
-    failed = visit_cell(complex, star->cells[c], vertex, star);
+    if (reserve(star))
+    {
+      return 1;
+    }
+    visit_cell(complex, star->cells[c], vertex, star);
   }
-  return failed;
+  return 0;
 }
 
 /* ---- the link as a graph ---- */
@@ -145,14 +156,12 @@ static void sort_ids(int32_t* ids, size_t count)
 
 static int collect_link(mlim_star* star)
 {
-  star->link_count = 0;
-  for (size_t e = 0; e < star->edge_count; ++e)
+  if (mlim_reserve(&star->link, &star->link_capacity, star->edge_count, sizeof *star->link))
   {
-    if (push(&star->link, &star->link_count, &star->link_capacity, star->edges[e]))
-    {
-      return 1;
-    }
+    return 1;
   }
+  star->link_count = star->edge_count;
+  memcpy(star->link, star->edges, star->edge_count * sizeof *star->link);
   sort_ids(star->link, star->link_count);
   size_t kept = 0;
   for (size_t k = 0; k < star->link_count; ++k)
