@@ -262,8 +262,8 @@ static int record_facet(mlim_complex* complex, int32_t cell, int index)
     return 0;
   }
   mlim_crossing crossing[MAX_CROSSINGS];
-  const size_t count =
-    mlim_oracle_crossings(&complex->oracle, a->center, b->center, MAX_CROSSINGS, crossing);
+  const size_t count = mlim_oracle_crossings_between(
+    &complex->oracle, a->center, b->center, differs, MAX_CROSSINGS, crossing);
   if (count == 0)
   {
     return 0;

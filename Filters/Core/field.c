@@ -109,7 +109,7 @@ static double trilinear(const uint32_t* values, const double at[3])
   return low + at[2] * (high - low);
 }
 
-static int32_t mixed_label(const uint32_t* entry, uint32_t word, const double at[3])
+int32_t field_mixed_label(const uint32_t* entry, uint32_t word, const double at[3])
 {
   if (!(word & (uint32_t)MANY))
   {
@@ -171,7 +171,7 @@ int32_t mlim_field_label(const mlim_field* field, const double point[3])
     return field->outside_label;
   }
   const uint32_t word = field_cell_word(field, cell, NULL);
-  return word & (uint32_t)MIXED ? mixed_label(field_pool_entry(field, cell, word), word, at)
+  return word & (uint32_t)MIXED ? field_mixed_label(field_pool_entry(field, cell, word), word, at)
                                 : (int32_t)word;
 }
 
@@ -191,7 +191,7 @@ int32_t mlim_field_label_near(const mlim_field* field, const double point[3], fl
   if (word & (uint32_t)MIXED)
   {
     *clearance = 0;
-    return mixed_label(field_pool_entry(field, cell, word), word, at);
+    return field_mixed_label(field_pool_entry(field, cell, word), word, at);
   }
   double least = 1;
   for (int k = 0; k < 3; ++k)

@@ -97,6 +97,9 @@ static inline const uint32_t* field_pool_entry(
   return field->layers[cell[2] >> 2].pool + (word & DETAIL);
 }
 
+/* Label at a place in a mixed cell, in its own coordinates from 0 to 1. */
+int32_t field_mixed_label(const uint32_t* entry, uint32_t word, const double at[3]);
+
 static inline float field_float(uint32_t word)
 {
   float value;

@@ -524,18 +524,9 @@ static void put_on_box(const mlim_field* field, double tolerance, mlim_crossing*
   }
 }
 
-size_t mlim_oracle_crossings(const mlim_oracle* oracle, const double start[3], const double end[3],
-  size_t capacity, mlim_crossing* out)
+static size_t cross_by_bisection(const mlim_oracle* oracle, const double start[3],
+  const double end[3], size_t capacity, mlim_crossing* out)
 {
-  if (oracle->mode == MLIM_ORACLE_EXACT)
-  {
-    const size_t count = cross_exact(oracle, start, end, capacity, out);
-    if (count > 0 || mlim_field_label(oracle->field, start) == mlim_field_label(oracle->field, end))
-    {
-      return count;
-    }
-    /* An end lies within rounding of the interface, on the side the walk did not see. */
-  }
   const size_t count =
     mlim_oracle_bisect(field_label, oracle->field, start, end, oracle->tolerance, capacity, out);
   for (size_t c = 0; c < count; ++c)
@@ -543,4 +534,23 @@ size_t mlim_oracle_crossings(const mlim_oracle* oracle, const double start[3], c
     put_on_box(oracle->field, oracle->tolerance, &out[c]);
   }
   return count;
+}
+
+size_t mlim_oracle_crossings_between(const mlim_oracle* oracle, const double start[3],
+  const double end[3], int differs, size_t capacity, mlim_crossing* out)
+{
+  const size_t count =
+    oracle->mode == MLIM_ORACLE_EXACT ? cross_exact(oracle, start, end, capacity, out) : 0;
+  /* With an end within rounding of the interface, on the side that the walk did not see, bisection
+     finds what the walk did not. */
+  const int is_done = oracle->mode == MLIM_ORACLE_EXACT && (count > 0 || !differs);
+  return is_done ? count : cross_by_bisection(oracle, start, end, capacity, out);
+}
+
+size_t mlim_oracle_crossings(const mlim_oracle* oracle, const double start[3], const double end[3],
+  size_t capacity, mlim_crossing* out)
+{
+  const int differs =
+    mlim_field_label(oracle->field, start) != mlim_field_label(oracle->field, end);
+  return mlim_oracle_crossings_between(oracle, start, end, differs, capacity, out);
 }

@@ -358,7 +358,8 @@ mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* con
 {
   *count = 0;
   mlim_mesh mesh = { 0 };
-  mlim_status status = look_for_components(verification, context, count);
+  mlim_status status =
+    verification->round == 0 ? look_for_components(verification, context, count) : MLIM_OK;
   if (status == MLIM_OK && !verification->is_near && verification->round < FAR_ROUNDS)
   {
     status = mlim_refine_report(verification->refinement, context);
@@ -380,6 +381,11 @@ mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* con
   if (status == MLIM_OK && verification->refinement->options->volume_tolerance > 0)
   {
     status = look_for_volume(verification, context, count);
+  }
+  /* In later rounds only before the last one: as long as there is something else to do, there is one. */
+  if (status == MLIM_OK && verification->round > 0 && *count == 0)
+  {
+    status = look_for_components(verification, context, count);
   }
   return status;
 }

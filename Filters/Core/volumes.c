@@ -14,15 +14,14 @@ typedef struct volume_job
   size_t* eighths; /* of cells; label_count a slice of cells */
 } volume_job;
 
-static void add_mixed_cell(const mlim_field* field, const int32_t cell[3], size_t* eighths)
+static void add_mixed_cell(
+  const mlim_field* field, const int32_t cell[3], uint32_t word, size_t* eighths)
 {
-  const double* spacing = field->grid.spacing;
+  const uint32_t* entry = field_pool_entry(field, cell, word);
   for (int c = 0; c < 8; ++c)
   {
-    const double at[3] = { (cell[0] + (c & 1 ? 0.75 : 0.25)) * spacing[0],
-      (cell[1] + (c & 2 ? 0.75 : 0.25)) * spacing[1],
-      (cell[2] + (c & 4 ? 0.75 : 0.25)) * spacing[2] };
-    ++eighths[mlim_field_label(field, at)];
+    const double at[3] = { c & 1 ? 0.75 : 0.25, c & 2 ? 0.75 : 0.25, c & 4 ? 0.75 : 0.25 };
+    ++eighths[field_mixed_label(entry, word, at)];
   }
 }
 
@@ -52,7 +51,7 @@ static void volume_body(void* data, size_t begin, size_t end)
         count = 1;
         if (word & (uint32_t)MIXED)
         {
-          add_mixed_cell(job->field, cell, eighths);
+          add_mixed_cell(job->field, cell, word, eighths);
           continue;
         }
         count = clearance > 1 ? count_alike(job->field, cell, clearance) : 1;
