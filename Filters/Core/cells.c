@@ -112,8 +112,8 @@ static int enqueue(cells* c, int32_t id)
   const verdict v = judge(c, cell);
   return v.badness == MLIM_BAD_NONE
            ? 0
-           : mlim_queue_push_at(&c->queue, mlim_queue_bin_of(v.badness, v.excess), cell->center, id,
-               c->generations[id]);
+           : mlim_queue_push_at(&c->queue, mlim_queue_bin_of(v.badness, v.excess),
+               mlim_complex_center(c->complex, id), id, c->generations[id]);
 }
 
 static mlim_status report(cells* c)
@@ -168,8 +168,10 @@ static int is_in_box(const cells* c, const double point[3])
          point[2] < size[2];
 }
 
-static void place_of(const cells* c, const mlim_cell* cell, double part, double out[3])
+static void place_of(const cells* c, int32_t id, double part, double out[3])
 {
+  const mlim_cell* cell = &c->complex->cells[id];
+  const double* center = mlim_complex_center(c->complex, id);
   for (int k = 0; k < 3; ++k)
   {
     double centroid = 0;
@@ -177,7 +179,7 @@ static void place_of(const cells* c, const mlim_cell* cell, double part, double 
     {
       centroid += 0.25 * c->complex->vertices[cell->vertices[v]].point[k];
     }
-    out[k] = part < 1 ? centroid + part * (cell->center[k] - centroid) : cell->center[k];
+    out[k] = part < 1 ? centroid + part * (center[k] - centroid) : center[k];
   }
 }
 
@@ -190,7 +192,7 @@ static mlim_status mend(cells* c, int32_t id, const verdict* v)
   {
     const double off = OFF_CENTER_DISTANCE * OFF_CENTER_DISTANCE * v->shortest_squared;
     double point[3];
-    place_of(c, &cell, PLACES[k], point);
+    place_of(c, id, PLACES[k], point);
     if (!is_in_box(c, point))
     {
       continue;

@@ -16,23 +16,25 @@ static const size_t MIN_VOLUME_VOXELS = 1000;
 
 /* The component of a corner that has the cell's label; all such corners touch each other. */
 static int32_t component_at(
-  const mlim_field* field, const mlim_components* components, const mlim_cell* cell)
+  const mlim_complex* complex, const mlim_components* components, int32_t cell)
 {
+  const mlim_field* field = complex->oracle.field;
+  const double* center = mlim_complex_center(complex, cell);
   const mlim_field_grid* grid = mlim_field_grid_of(field);
   int32_t low[3];
   for (int k = 0; k < 3; ++k)
   {
-    if (!(cell->center[k] >= 0 && cell->center[k] <= grid->size[k]))
+    if (!(center[k] >= 0 && center[k] <= grid->size[k]))
     {
       return -1;
     }
-    low[k] = (int32_t)(cell->center[k] / grid->spacing[k]);
+    low[k] = (int32_t)(center[k] / grid->spacing[k]);
     low[k] = low[k] >= grid->cells[k] ? grid->cells[k] - 1 : low[k];
   }
   for (int c = 0; c < 8; ++c)
   {
     const int32_t p[3] = { low[0] + (c & 1), low[1] + (c >> 1 & 1), low[2] + (c >> 2 & 1) };
-    if (mlim_field_point_label(field, p) == cell->label)
+    if (mlim_field_point_label(field, p) == complex->cells[cell].label)
     {
       return components
         ->of_point[(size_t)p[0] +
@@ -62,8 +64,8 @@ void mlim_certificate_find_components(const mlim_complex* complex,
   memset(is_found, 0, components->count);
   for (size_t c = 0; c < complex->cell_count; ++c)
   {
-    const mlim_cell* cell = &complex->cells[c];
-    const int32_t component = cell->vertices[0] >= 0 ? component_at(field, components, cell) : -1;
+    const int32_t component =
+      complex->cells[c].vertices[0] >= 0 ? component_at(complex, components, (int32_t)c) : -1;
     if (component >= 0)
     {
       is_found[component] = 1;

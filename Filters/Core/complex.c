@@ -54,6 +54,7 @@ void mlim_complex_free(mlim_complex* complex)
   mlim_release(complex->distance_shares);
   mlim_release(complex->vertices);
   mlim_release(complex->cells);
+  mlim_release(complex->centers);
   mlim_release(complex->facets);
   mlim_release(complex->free_facets);
   mlim_release(complex->fresh);
@@ -226,17 +227,19 @@ static size_t farthest(const mlim_crossing* crossing, size_t count, const double
   return best;
 }
 
-/* A segment that stays where the field is uniform, as the duals between most cells of one label do:
-   round each end lies a cube of its label, and the two cover the segment together. */
-static int is_clear(const mlim_complex* complex, const mlim_cell* a, const mlim_cell* b)
+/* A dual that stays where the field is uniform, as most between cells of one label do: round each end
+   lies a cube of its label, and the two cover it together. */
+static int is_clear(const mlim_complex* complex, int32_t a, int32_t b)
 {
   const double* inverse = mlim_field_grid_of(complex->oracle.field)->inverse_spacing;
+  const double* start = mlim_complex_center(complex, a);
+  const double* end = mlim_complex_center(complex, b);
   double longest = 0;
   for (int k = 0; k < 3; ++k)
   {
-    longest = mlim_max(longest, fabs(a->center[k] - b->center[k]) * inverse[k]);
+    longest = mlim_max(longest, fabs(start[k] - end[k]) * inverse[k]);
   }
-  return longest <= (double)a->clearance + (double)b->clearance;
+  return longest <= (double)complex->cells[a].clearance + (double)complex->cells[b].clearance;
 }
 
 static mlim_sheet sheet_of(const mlim_crossing* crossing)
@@ -255,15 +258,17 @@ static int record_facet(mlim_complex* complex, int32_t cell, int index)
   {
     return 0;
   }
-  mlim_cell* b = &complex->cells[a->neighbors[index]];
+  const int32_t other = a->neighbors[index];
+  mlim_cell* b = &complex->cells[other];
   const int differs = a->label != b->label;
-  if (!differs && is_clear(complex, a, b))
+  if (!differs && is_clear(complex, cell, other))
   {
     return 0;
   }
   mlim_crossing crossing[MAX_CROSSINGS];
-  const size_t count = mlim_oracle_crossings_between(
-    &complex->oracle, a->center, b->center, differs, MAX_CROSSINGS, crossing);
+  const size_t count =
+    mlim_oracle_crossings_between(&complex->oracle, mlim_complex_center(complex, cell),
+      mlim_complex_center(complex, other), differs, MAX_CROSSINGS, crossing);
   if (count == 0)
   {
     return 0;
@@ -294,35 +299,47 @@ static int record_facet(mlim_complex* complex, int32_t cell, int index)
 
 /* ---- insertion ---- */
 
-static void take_cell(mlim_complex* complex, const mlim_delaunay_cell* made)
+int mlim_complex_reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
+{
+  for (size_t k = 0; k < made->count; ++k)
+  {
+    const size_t needed = (size_t)made->cells[k].id + 1;
+    if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells) ||
+        mlim_reserve(
+          &complex->centers, &complex->center_capacity, 3 * needed, sizeof *complex->centers))
+    {
+      return 1;
+    }
+    for (; complex->cell_count < needed; ++complex->cell_count)
+    {
+      complex->cells[complex->cell_count] = (mlim_cell){ .vertices = { -1, -1, -1, -1 } };
+    }
+  }
+  return 0;
+}
+
+void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* made)
 {
   mlim_cell* cell = &complex->cells[made->id];
-  *cell = (mlim_cell){ 0 };
+  *cell = (mlim_cell){ .label = 0 };
   for (int k = 0; k < 4; ++k)
   {
     cell->vertices[k] = made->vertices[k];
     cell->neighbors[k] = made->neighbors[k];
     complex->vertices[made->vertices[k]].cell = made->id;
   }
-  mlim_copy(made->center, cell->center);
-  cell->label = mlim_field_label_near(complex->oracle.field, cell->center, &cell->clearance);
+  mlim_copy(made->center, complex->centers + 3 * (size_t)made->id);
 }
 
-static int reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
+static void take_and_label(mlim_complex* complex, const mlim_delaunay_cells* made)
 {
   for (size_t k = 0; k < made->count; ++k)
   {
-    const size_t needed = (size_t)made->cells[k].id + 1;
-    if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells))
-    {
-      return 1;
-    }
-    for (; complex->cell_count < needed; ++complex->cell_count)
-    {
-      complex->cells[complex->cell_count].vertices[0] = -1;
-    }
+    const mlim_delaunay_cell* one = &made->cells[k];
+    mlim_cell* cell = &complex->cells[one->id];
+    mlim_complex_take_cell(complex, one);
+    cell->label = mlim_field_label_near(complex->oracle.field, one->center, &cell->clearance);
   }
-  return 0;
 }
 
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
@@ -475,14 +492,11 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   {
     return status;
   }
-  if (reserve_cells(complex, &made))
+  if (mlim_complex_reserve_cells(complex, &made))
   {
     return mlim_fail_memory(context, "the triangulation");
   }
-  for (size_t k = 0; k < made.count; ++k)
-  {
-    take_cell(complex, &made.cells[k]);
-  }
+  take_and_label(complex, &made);
   if (update_cells(complex, &made, vertex))
   {
     return mlim_fail_memory(context, "the restricted facets");
@@ -498,14 +512,11 @@ mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_con
   {
     return status;
   }
-  if (reserve_cells(complex, &all))
+  if (mlim_complex_reserve_cells(complex, &all))
   {
     return mlim_fail_memory(context, "the triangulation");
   }
-  for (size_t k = 0; k < all.count; ++k)
-  {
-    take_cell(complex, &all.cells[k]);
-  }
+  take_and_label(complex, &all);
   complex->fresh_count = 0;
   for (size_t v = 0; v < complex->vertex_count; ++v)
   {

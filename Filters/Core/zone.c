@@ -45,38 +45,13 @@ static void link_outer(mlim_complex* complex, int32_t id, int index)
   }
 }
 
-static int reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
-{
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    const size_t needed = (size_t)made->cells[k].id + 1;
-    if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells))
-    {
-      return 1;
-    }
-    for (; complex->cell_count < needed; ++complex->cell_count)
-    {
-      complex->cells[complex->cell_count] = (mlim_cell){ .vertices = { -1, -1, -1, -1 } };
-    }
-  }
-  return 0;
-}
-
 static void take_cells(
   mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex, int32_t label)
 {
   for (size_t k = 0; k < made->count; ++k)
   {
-    const mlim_delaunay_cell* m = &made->cells[k];
-    mlim_cell* cell = &complex->cells[m->id];
-    *cell = (mlim_cell){ .label = label };
-    mlim_copy(m->center, cell->center);
-    for (int i = 0; i < 4; ++i)
-    {
-      cell->vertices[i] = m->vertices[i];
-      cell->neighbors[i] = m->neighbors[i];
-      complex->vertices[m->vertices[i]].cell = m->id;
-    }
+    mlim_complex_take_cell(complex, &made->cells[k]);
+    complex->cells[made->cells[k].id].label = label;
   }
   for (size_t k = 0; k < made->count; ++k)
   {
@@ -114,7 +89,7 @@ mlim_status mlim_zone_fill(mlim_complex* complex, const mlim_delaunay_zone* zone
   complex->vertices[vertex] = (mlim_vertex){ .kind = MLIM_VERTEX_INSIDE, .ball = -1 };
   mlim_copy(point, complex->vertices[vertex].point);
   const mlim_status status = mlim_delaunay_fill(complex->delaunay, context, made);
-  if (status == MLIM_OK && reserve_cells(complex, made))
+  if (status == MLIM_OK && mlim_complex_reserve_cells(complex, made))
   {
     return mlim_fail_memory(context, "the triangulation");
   }
