@@ -29,7 +29,7 @@ order='
 5 triangulation delaunay
 6 criteria      complex sides criteria disk
 7 refinement    queue seeds refine tidy spots zone box cells
-8 products      volumes edges nearest mesh quality certificate
+8 products      volumes edges skin nearest mesh quality certificate
 9 whole         verify volume build
 '
 

@@ -49,7 +49,7 @@ mlim_status mlim_delaunay_all(
 typedef enum mlim_delaunay_start
 {
   MLIM_START_IN_CONFLICT, /* start is tried alone: no search */
-  MLIM_START_NEAR         /* the point is located from start on; MLIM_NO_CELL: from anywhere */
+  MLIM_START_NEAR         /* the point is located from start on; MLIM_NO_CELL: from the last one */
 } mlim_delaunay_start;
 
 typedef struct mlim_delaunay_zone

@@ -5,6 +5,7 @@
 #include "status.h"
 #include "triangle.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -305,19 +306,21 @@ enum
   SIDE_COST = 13
 };
 
-static long cost(tidier* t)
+/* At least `enough`: it was not worth to count on. Disks last, since they cost most to look at. */
+static long cost(tidier* t, long enough)
 {
+  const mlim_complex* complex = &t->refinement->complex;
   long sum = 0;
-  for (size_t k = 0; k < t->vertex_count; ++k)
-  {
-    sum += DISK_COST * fails(t, t->vertices[k]);
-  }
-  for (size_t p = 0; p < t->part_count; ++p)
+  for (size_t p = 0; p < t->part_count && sum < enough; ++p)
   {
     const int32_t id = t->part[p];
-    sum += cell_strays(&t->refinement->complex, id, t->refinement->complex.cells[id].label);
+    sum += cell_strays(complex, id, complex->cells[id].label);
     sum += SHAPE_COST * cell_misshapen(t->refinement, id);
     sum += SIDE_COST * cell_unseen(t->refinement, id);
+  }
+  for (size_t k = 0; k < t->vertex_count && sum < enough; ++k)
+  {
+    sum += DISK_COST * fails(t, t->vertices[k]);
   }
   return sum;
 }
@@ -336,7 +339,7 @@ static size_t mend_part(tidier* t)
   mlim_complex* complex = &t->refinement->complex;
   const int32_t own = complex->cells[t->part[0]].label;
   gather_vertices(t);
-  long least = cost(t);
+  long least = cost(t, LONG_MAX);
   int32_t best = own;
   int32_t tried[4 * MAX_PART];
   size_t tried_count = 0;
@@ -354,7 +357,7 @@ static size_t mend_part(tidier* t)
   for (size_t n = 0; n < tried_count; ++n)
   {
     relabel(t, tried[n]);
-    const long sum = cost(t);
+    const long sum = cost(t, least);
     if (sum < least)
     {
       least = sum;

@@ -3,10 +3,10 @@
 #include "certificate.h"
 #include "crossings.h"
 #include "memory.h"
-#include "mesh.h"
 #include "nearest.h"
 #include "seeds.h"
 #include "sides.h"
+#include "skin.h"
 #include "status.h"
 #include "vector.h"
 #include "volumes.h"
@@ -176,58 +176,88 @@ static int has_many_far(const far_job* job, size_t slices)
   return far > FAR_SHARE * seen;
 }
 
-static mlim_status look_for_far(
-  mlim_verification* v, const mlim_mesh* mesh, mlim_context* context, size_t* count)
+/* The triangles among which a crossing may find one that is near: all, or those near the crossings that
+   were far at the last look. */
+static mlim_status read_skin(const mlim_verification* v, mlim_context* context, mlim_mesh* out)
+{
+  const mlim_complex* complex = &v->refinement->complex;
+  const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
+  mlim_skin_blocks blocks = { 0 };
+  if (v->far != NULL)
+  {
+    const mlim_status status =
+      mlim_skin_blocks_create(grid->size, v->refinement->options->facet_distance, context, &blocks);
+    if (status != MLIM_OK)
+    {
+      return status;
+    }
+    for (size_t z = 0; z < (size_t)grid->dims[2]; ++z)
+    {
+      for (size_t k = 0; k < v->far[z].count; ++k)
+      {
+        mlim_skin_blocks_add(&blocks, v->far[z].crossings[k].point);
+      }
+    }
+  }
+  const mlim_status status = mlim_skin_read(complex, &blocks, context, out);
+  mlim_skin_blocks_free(&blocks);
+  return status;
+}
+
+static mlim_status look_at_slices(
+  mlim_verification* v, const mlim_nearest* nearest, mlim_context* context, size_t* count)
 {
   const mlim_complex* complex = &v->refinement->complex;
   const mlim_options* options = v->refinement->options;
-  const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
-  const size_t slices = (size_t)grid->dims[2];
-  mlim_nearest nearest;
-  mlim_status status = mlim_refine_report(v->refinement, context);
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
-  status = mlim_nearest_create(mesh, grid->size, grid->unit, context, &nearest);
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
+  const size_t slices = (size_t)mlim_field_grid_of(complex->oracle.field)->dims[2];
   const int is_listed = v->far != NULL;
   v->far = is_listed ? v->far : mlim_allocate_zeroed(slices, sizeof *v->far);
   if (v->far == NULL)
   {
+    return mlim_fail_memory(context, "the crossings far from the mesh");
+  }
+  far_job job = { .verification = v,
+    .nearest = nearest,
+    .oracle = { .field = complex->oracle.field,
+      .tolerance = complex->oracle.tolerance,
+      .mode = MLIM_ORACLE_EXACT },
+    .bound = options->facet_distance,
+    .min_voxels = options->min_component_voxels,
+    .lists = v->far,
+    .is_listed = is_listed };
+  const mlim_stage_work work = { .count = slices,
+    .body = far_body,
+    .job = &job,
+    .stage = MLIM_STAGE_SURFACE,
+    .from = v->refinement->progress,
+    .to = v->refinement->progress };
+  mlim_status status = mlim_parallel_stage(context, &work);
+  if (status == MLIM_OK && has_failed(&job, slices))
+  {
     status = mlim_fail_memory(context, "the crossings far from the mesh");
   }
-  else
+  return status == MLIM_OK && has_many_far(&job, slices) ? insert_far(&job, slices, context, count)
+                                                         : status;
+}
+
+static mlim_status look_for_far(mlim_verification* v, mlim_context* context, size_t* count)
+{
+  const mlim_field_grid* grid = mlim_field_grid_of(v->refinement->complex.oracle.field);
+  mlim_mesh skin = { 0 };
+  mlim_nearest nearest = { 0 };
+  mlim_status status = mlim_refine_report(v->refinement, context);
+  status = status == MLIM_OK ? read_skin(v, context, &skin) : status;
+  status = status == MLIM_OK ? mlim_refine_report(v->refinement, context) : status;
+  if (status == MLIM_OK)
   {
-    far_job job = { .verification = v,
-      .nearest = &nearest,
-      .oracle = { .field = complex->oracle.field,
-        .tolerance = complex->oracle.tolerance,
-        .mode = MLIM_ORACLE_EXACT },
-      .bound = options->facet_distance,
-      .min_voxels = options->min_component_voxels,
-      .lists = v->far,
-      .is_listed = is_listed };
-    const mlim_stage_work work = { .count = slices,
-      .body = far_body,
-      .job = &job,
-      .stage = MLIM_STAGE_SURFACE,
-      .from = v->refinement->progress,
-      .to = v->refinement->progress };
-    status = mlim_parallel_stage(context, &work);
-    if (status == MLIM_OK && has_failed(&job, slices))
-    {
-      status = mlim_fail_memory(context, "the crossings far from the mesh");
-    }
-    if (status == MLIM_OK && has_many_far(&job, slices))
-    {
-      status = insert_far(&job, slices, context, count);
-    }
+    status = mlim_nearest_create(&skin, grid->size, grid->unit, context, &nearest);
+  }
+  if (status == MLIM_OK)
+  {
+    status = look_at_slices(v, &nearest, context, count);
   }
   mlim_nearest_free(&nearest);
+  mlim_mesh_free(&skin);
   return status;
 }
 
@@ -357,22 +387,14 @@ void mlim_verify_free(mlim_verification* verification)
 mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* context, size_t* count)
 {
   *count = 0;
-  mlim_mesh mesh = { 0 };
   mlim_status status =
     verification->round == 0 ? look_for_components(verification, context, count) : MLIM_OK;
   if (status == MLIM_OK && !verification->is_near && verification->round < FAR_ROUNDS)
   {
-    status = mlim_refine_report(verification->refinement, context);
-    status = status != MLIM_OK ? status
-                               : mlim_mesh_read(&verification->refinement->complex, context, &mesh);
-    if (status == MLIM_OK)
-    {
-      size_t far = 0;
-      status = look_for_far(verification, &mesh, context, &far);
-      verification->is_near = far == 0;
-      *count += far;
-    }
-    mlim_mesh_free(&mesh);
+    size_t far = 0;
+    status = look_for_far(verification, context, &far);
+    verification->is_near = far == 0;
+    *count += far;
   }
   if (status == MLIM_OK)
   {

@@ -190,6 +190,7 @@ struct mlim_delaunay
   std::vector<CellHandle> cells; // by id; stale where the id is free
   std::vector<int32_t> free;     // ids, last in first out
   int32_t vertex_count = 0;
+  VertexHandle last; // inserted: what is asked for next is often near
   double far[MLIM_FAR_VERTICES][3];
 
   // The zone of the last find.
@@ -299,6 +300,7 @@ struct mlim_delaunay
       VertexHandle v = this->triangulation.insert(
         Weighted(Point(this->far[k][0], this->far[k][1], this->far[k][2]), 0));
       v->info() = this->vertex_count++;
+      this->last = v;
     }
     for (CellHandle c : this->triangulation.all_cell_handles())
     {
@@ -364,8 +366,8 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
       delaunay->Drop();
       Triangulation& t = delaunay->triangulation;
       delaunay->point = Weighted(Point(point[0], point[1], point[2]), weight);
-      CellHandle from =
-        start == MLIM_NO_CELL ? CellHandle() : delaunay->cells[static_cast<size_t>(start)];
+      CellHandle from = start == MLIM_NO_CELL ? delaunay->last->cell()
+                                              : delaunay->cells[static_cast<size_t>(start)];
       if (kind == MLIM_START_NEAR)
       {
         Regular::Locate_type type;
@@ -425,6 +427,7 @@ mlim_status mlim_delaunay_fill(
       VertexHandle v =
         delaunay->triangulation.Fill(delaunay->point, delaunay->boundary, delaunay->zone);
       v->info() = delaunay->vertex_count++;
+      delaunay->last = v;
       for (const auto& o : delaunay->outer)
       {
         delaunay->TakeId(o.first->neighbor(o.second));
