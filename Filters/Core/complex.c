@@ -343,17 +343,18 @@ static void take_and_label(mlim_complex* complex, const mlim_delaunay_cells* mad
 }
 
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
-  mlim_delaunay_start kind, mlim_context* context, double* power)
+  mlim_delaunay_start kind, mlim_context* context, int* is_found)
 {
-  *power = -1;
   complex->pending = *vertex;
-  mlim_status status = mlim_delaunay_find(
+  const mlim_status status = mlim_delaunay_find(
     complex->delaunay, vertex->point, vertex->weight, start, kind, context, &complex->zone);
-  if (status != MLIM_OK || complex->zone.count == 0 || complex->cell_count == 0)
-  {
-    *power = status == MLIM_OK && complex->zone.count > 0 ? INFINITY : -1;
-    return status;
-  }
+  *is_found = status == MLIM_OK && complex->zone.count > 0;
+  return status;
+}
+
+double mlim_complex_power(const mlim_complex* complex)
+{
+  const double* point = complex->pending.point;
   double least = INFINITY;
   for (size_t c = 0; c < complex->zone.count; ++c)
   {
@@ -361,11 +362,10 @@ mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex,
     for (int k = 0; k < 4; ++k)
     {
       const mlim_vertex* v = &complex->vertices[cell->vertices[k]];
-      least = mlim_min(least, mlim_distance_squared(v->point, vertex->point) - v->weight);
+      least = mlim_min(least, mlim_distance_squared(v->point, point) - v->weight);
     }
   }
-  *power = mlim_max(least, 0);
-  return MLIM_OK;
+  return least;
 }
 
 /* Records inside the zone die; those on its surface go over to the cell outside. */

@@ -97,11 +97,14 @@ mlim_status mlim_complex_create(
   const mlim_oracle* oracle, const mlim_balls* balls, mlim_context* context, mlim_complex* out);
 void mlim_complex_free(mlim_complex* complex);
 
-/* Looks where a vertex would go. *power receives the smallest power distance of the point to all
-   vertices (a surface point's squared distance to the nearest one without weight), or -1 when it
-   cannot be inserted. start and kind as in mlim_delaunay_find. */
+/* Looks where a vertex would go; *is_found: it can be inserted. start and kind as in
+   mlim_delaunay_find. */
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
-  mlim_delaunay_start kind, mlim_context* context, double* power);
+  mlim_delaunay_start kind, mlim_context* context, int* is_found);
+
+/* The smallest power distance of the point of the last probe, which was found, to all vertices: a surface
+   point's squared distance to the nearest one without weight. Only once all is recorded. */
+double mlim_complex_power(const mlim_complex* complex);
 
 /* Inserts the vertex of the last probe, relabels and records. fresh lists the new records.
    MLIM_VERTEX_LIMIT, and nothing changes, when that many vertices are there. */

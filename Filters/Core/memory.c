@@ -28,12 +28,8 @@ void mlim_release(void* memory)
   free(memory);
 }
 
-int mlim_reserve(void* array, size_t* capacity, size_t needed, size_t size)
+int mlim_grow(void* array, size_t* capacity, size_t needed, size_t size)
 {
-  if (needed <= *capacity)
-  {
-    return 0;
-  }
   size_t grown = *capacity < 16 ? 16 : *capacity;
   while (grown < needed)
   {

@@ -13,8 +13,15 @@ void* mlim_allocate_zeroed(size_t count, size_t size);
 
 void mlim_release(void* memory);
 
+/* What mlim_reserve does when there is no room. */
+int mlim_grow(void* array, size_t* capacity, size_t needed, size_t size);
+
 /* Makes room for at least `needed` elements in an array that grows by doubling: *array holds
    *capacity elements before and after. Returns 0 on success; on failure nothing has changed. */
-int mlim_reserve(void* array, size_t* capacity, size_t needed, size_t size);
+static inline int mlim_reserve(void* array, size_t* capacity, size_t needed, size_t size)
+{
+  /* Asked for at each element: nearly always there is room. */
+  return needed <= *capacity ? 0 : mlim_grow(array, capacity, needed, size);
+}
 
 #endif

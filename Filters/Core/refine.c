@@ -35,19 +35,27 @@ static int compare_vertices(const void* a, const void* b)
   return (x->vertex > y->vertex) - (x->vertex < y->vertex);
 }
 
-/* The order along the Morton curve, so that each vertex is located from the one before in a few steps. */
-static ordered_vertex* order_points(
-  const mlim_refinement* r, const double* points, size_t stride, size_t count)
+/* Along the Morton curve, so that each point is near the one before. */
+static void sort_along_curve(ordered_vertex* order, size_t count)
+{
+  if (count > 1)
+  {
+    qsort(order, count, sizeof *order, compare_vertices);
+  }
+}
+
+/* NULL: out of memory. */
+static ordered_vertex* order_points(const mlim_refinement* r, const double* points, size_t count)
 {
   ordered_vertex* order = mlim_allocate(count, sizeof *order);
   for (size_t v = 0; order != NULL && v < count; ++v)
   {
-    order[v] = (ordered_vertex){ .place = mlim_queue_place(&r->queue, points + stride * v),
+    order[v] = (ordered_vertex){ .place = mlim_queue_place(&r->queue, points + 3 * v),
       .vertex = (int32_t)v };
   }
-  if (order != NULL && count > 1)
+  if (order != NULL)
   {
-    qsort(order, count, sizeof *order, compare_vertices);
+    sort_along_curve(order, count);
   }
   return order;
 }
@@ -63,11 +71,11 @@ static double expect_vertices(const mlim_refinement* r)
 static mlim_status insert_first(mlim_refinement* r, const mlim_vertex* vertex, size_t number,
   mlim_context* context, int* is_hidden)
 {
-  double power;
+  int is_found;
   mlim_status status =
-    mlim_complex_probe(&r->complex, vertex, MLIM_NO_CELL, MLIM_START_NEAR, context, &power);
-  *is_hidden = status == MLIM_OK && power < 0;
-  if (status == MLIM_OK && !*is_hidden)
+    mlim_complex_probe(&r->complex, vertex, MLIM_NO_CELL, MLIM_START_NEAR, context, &is_found);
+  *is_hidden = status == MLIM_OK && !is_found;
+  if (is_found)
   {
     status = mlim_complex_commit(&r->complex, context);
   }
@@ -78,7 +86,7 @@ static mlim_status insert_first(mlim_refinement* r, const mlim_vertex* vertex, s
 static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mlim_context* context,
   unsigned char* is_hidden, size_t* hidden_count)
 {
-  ordered_vertex* order = order_points(r, balls->centers, 3, balls->ball_count);
+  ordered_vertex* order = order_points(r, balls->centers, balls->ball_count);
   mlim_status status = order == NULL ? mlim_fail_memory(context, "the protecting balls") : MLIM_OK;
   for (size_t k = 0; k < balls->ball_count && status == MLIM_OK; ++k)
   {
@@ -101,7 +109,7 @@ static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mli
 
 static mlim_status insert_known(mlim_refinement* r, const mlim_known* known, mlim_context* context)
 {
-  ordered_vertex* order = order_points(r, known->points, 3, known->count);
+  ordered_vertex* order = order_points(r, known->points, known->count);
   mlim_status status = order == NULL ? mlim_fail_memory(context, "the triangulation") : MLIM_OK;
   for (size_t k = 0; k < known->count && status == MLIM_OK; ++k)
   {
@@ -219,17 +227,16 @@ static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_cont
   mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = facet->sheet };
   mlim_copy(facet->crossing, vertex.point);
   const int32_t sides[2] = { facet->cell, complex->cells[facet->cell].neighbors[facet->index] };
-  double power = -1;
+  int is_found = 0;
   mlim_status status = MLIM_OK;
   /* The crossing lies on the dual, between the two power centres: both cells are in conflict but
-     for rounding. */
-  for (int k = 0; k < 2 && status == MLIM_OK && power < 0; ++k)
+     for rounding. That no vertex is too near was seen before the facet was queued. */
+  for (int k = 0; k < 2 && status == MLIM_OK && !is_found; ++k)
   {
     status =
-      mlim_complex_probe(complex, &vertex, sides[k], MLIM_START_IN_CONFLICT, context, &power);
+      mlim_complex_probe(complex, &vertex, sides[k], MLIM_START_IN_CONFLICT, context, &is_found);
   }
-  const double least = 0.25 * r->options->smallest_distance * r->options->smallest_distance;
-  if (status != MLIM_OK || power < least)
+  if (!is_found)
   {
     return status;
   }
@@ -296,13 +303,6 @@ static int enqueue_star(mlim_refinement* r, int32_t vertex)
                    : mlim_queue_push(&r->queue, mlim_queue_bin_of(MLIM_BAD_DISK, 1), complex, best);
 }
 
-static int compare_ids(const void* a, const void* b)
-{
-  const int32_t x = *(const int32_t*)a;
-  const int32_t y = *(const int32_t*)b;
-  return (x > y) - (x < y);
-}
-
 /* Not a failure: the vertex's is_broken is up to date, its star is in r->star. */
 static mlim_status check_disk(mlim_refinement* r, int32_t vertex, mlim_context* context)
 {
@@ -314,17 +314,30 @@ static mlim_status check_disk(mlim_refinement* r, int32_t vertex, mlim_context* 
   return status;
 }
 
-/* Checks the vertices whose stars have changed. */
+/* Checks the vertices whose stars have changed, neighbours one after the other: their stars share
+   cells. */
 static mlim_status check_disks(mlim_refinement* r, mlim_context* context)
 {
   mlim_complex* complex = &r->complex;
-  qsort(complex->dirty, complex->dirty_count, sizeof *complex->dirty, compare_ids);
+  ordered_vertex* order = mlim_allocate(complex->dirty_count, sizeof *order);
+  if (order == NULL)
+  {
+    return mlim_fail_memory(context, "the order of the vertices");
+  }
+  for (size_t k = 0; k < complex->dirty_count; ++k)
+  {
+    const int32_t vertex = complex->dirty[k];
+    order[k] =
+      (ordered_vertex){ .place = mlim_queue_place(&r->queue, complex->vertices[vertex].point),
+        .vertex = vertex };
+  }
+  sort_along_curve(order, complex->dirty_count);
   mlim_status status = MLIM_OK;
   for (size_t k = 0; k < complex->dirty_count && status == MLIM_OK; ++k)
   {
-    const int32_t vertex = complex->dirty[k];
-    status = check_disk(r, vertex, context);
-    if (status == MLIM_OK && complex->vertices[vertex].is_broken && enqueue_star(r, vertex))
+    status = check_disk(r, order[k].vertex, context);
+    if (status == MLIM_OK && complex->vertices[order[k].vertex].is_broken &&
+        enqueue_star(r, order[k].vertex))
     {
       status = mlim_fail_memory(context, "the queue of facets");
     }
@@ -333,6 +346,7 @@ static mlim_status check_disks(mlim_refinement* r, mlim_context* context)
       status = mlim_refine_report(r, context);
     }
   }
+  mlim_release(order);
   complex->dirty_count = 0;
   return status;
 }

@@ -43,10 +43,11 @@ mlim_status mlim_seeds_insert(mlim_complex* complex, const mlim_crossing* crossi
   {
     vertex.point[k] = crossing->point[k];
   }
-  double power;
+  int is_found;
   const int32_t near = complex->vertices[complex->vertex_count - 1].cell;
-  mlim_status status = mlim_complex_probe(complex, &vertex, near, MLIM_START_NEAR, context, &power);
-  if (status == MLIM_OK && power >= distance * distance)
+  mlim_status status =
+    mlim_complex_probe(complex, &vertex, near, MLIM_START_NEAR, context, &is_found);
+  if (is_found && mlim_complex_power(complex) >= distance * distance)
   {
     status = mlim_complex_commit(complex, context);
     *count += status == MLIM_OK;
