@@ -29,6 +29,7 @@ typedef struct build
   mlim_balls balls; /* own: after pruning and splitting */
   const mlim_balls* used_balls;
   size_t hidden_ball_count;
+  size_t insertion_count; /* of the passes before this one */
   size_t relabeled_cell_count;
   mlim_edges edges;       /* of the mesh */
   int32_t* mesh_vertices; /* of each of the complex's vertices, for the volume */
@@ -75,6 +76,7 @@ static mlim_status seed(build* b, int has_points)
 /* Replaces the balls by others made from them. */
 static void take_balls(build* b, mlim_balls* balls)
 {
+  b->insertion_count += b->refinement.insertion_count;
   mlim_refine_free(&b->refinement);
   mlim_balls_free(&b->balls);
   b->balls = *balls;
@@ -265,7 +267,7 @@ static mlim_status measure_quality(build* b, mlim_mesh* out)
   mlim_report* report = &out->report;
   mlim_quality_measure(out, &b->edges, b->options->facet_radius_edge_ratio);
   out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &b->edges);
-  report->insertion_count = b->refinement.insertion_count;
+  report->insertion_count = b->insertion_count + b->refinement.insertion_count;
   report->relabeled_cell_count = b->relabeled_cell_count;
   report->hidden_ball_count = b->hidden_ball_count;
   count_unresolved(b, report);

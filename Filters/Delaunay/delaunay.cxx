@@ -4,9 +4,9 @@
 
 extern "C" {
 #include "delaunay.h"
+#include "power_sphere.h"
 #include "status.h"
 }
-#include "power_sphere.h"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

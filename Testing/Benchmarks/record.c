@@ -128,8 +128,8 @@ static void add_stage_row(bench_table* table, const bench_result* result)
   const bench_figures* f = &result->best;
   size_t column = start_row(table, result);
   bench_table_cell(table, &column, "%zu", f->triangle_count);
-  /* No case is a label map, so nothing makes indicators. */
-  for (int s = MLIM_STAGE_FIELD; s < MLIM_STAGE_END; ++s)
+  /* No case is a label map, so nothing makes indicators; none is filled. */
+  for (int s = MLIM_STAGE_FIELD; s <= MLIM_STAGE_CERTIFICATE; ++s)
   {
     bench_table_cell(table, &column, "%.3f", f->user[s]);
   }

@@ -18,13 +18,14 @@
    added, to 8 u (|x - c|^2 + |R| + w); ROUNDING is four times that. The components of n_k are right to
    6 u |e_i| |e_j|, and v to 24 u |e_1| |e_2| |e_3|, which is below 1e-4 of it where the cell is not
    called flat; the same holds for the length of n_k then, which is at least v / |e_k|. 2.1 for 2 in G and
-   SLACK cover this and the rounding of the bound itself, TINY the loss of digits near zero.
+   SLACK cover this and the rounding of the bound itself, TINY and FLT_MIN the loss of digits near zero.
 
    Nothing is assumed of c and R: the residuals, measured, tell how good they are. Not a number and
    infinite values compare as undecided. */
 #ifndef mlim_power_sphere_h
 #define mlim_power_sphere_h
 
+#include <float.h>
 #include <math.h>
 
 typedef struct mlim_power_sphere
@@ -74,8 +75,8 @@ static inline void mlim_power_sphere_bound(
   }
   const double residual = worst + MLIM_SPHERE_ROUNDING * most;
   const double growth = 2.1 * gradient;
-  sphere->base = (float)(MLIM_SPHERE_SLACK * residual * (1 + growth * sqrt(first)));
-  sphere->slope = (float)(MLIM_SPHERE_SLACK * residual * growth);
+  sphere->base = (float)(MLIM_SPHERE_SLACK * residual * (1 + growth * sqrt(first))) + FLT_MIN;
+  sphere->slope = (float)(MLIM_SPHERE_SLACK * residual * growth) + FLT_MIN;
 }
 
 /* Weighted circumcentre and bound of a positively oriented tetrahedron. Returns 0, and clears the
