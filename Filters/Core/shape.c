@@ -103,7 +103,7 @@ double mlim_shape_of(const mlim_shape_bound* bound, const double* const p[4])
   const double least = mlim_min(mlim_min(mlim_min(aa * n2 * n3, bb * n1 * n3), cc * n1 * n2),
     mlim_min(mlim_min(ab_ab * n0 * n3, ac_ac * n0 * n2), bc_bc * n0 * n1));
   const double sine = at.volume * sqrt(least);
-  if (!(at.volume > 0) || !(sine > 0))
+  if (!(sine > 0))
   {
     return isfinite(sine) ? mlim_max(sine / bound->sine, LEAST_SHAPE) : LEAST_SHAPE;
   }

@@ -27,7 +27,7 @@ CASES = (
 LIMITS = {"max_ratio": float("inf")}
 MAX_SHARES = {
     "below_10": 1e-4,
-    "ratio_exceptions": 2e-5,
+    "ratio_exceptions": 1e-5,
     "ratio_exceptions_away": 0.0,
 }
 COLUMNS = (
