@@ -29,6 +29,7 @@ MAX_SHARES = {
     "below_10": 1e-4,
     "ratio_exceptions": 1e-5,
     "ratio_exceptions_away": 0.0,
+    "ball_ratio_exceptions": 0.06,
 }
 COLUMNS = (
     ("cells", "{:8d}"),
