@@ -134,4 +134,15 @@ void WriteCount(const char* name, size_t value, vtkFieldData* out)
   out->AddArray(array);
 }
 
+void WriteLabelVolumes(const double* volumes, size_t count, vtkFieldData* out)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName("LabelVolumes");
+  for (size_t label = 0; label < count; ++label)
+  {
+    array->InsertNextValue(volumes[label]);
+  }
+  out->AddArray(array);
+}
+
 }

@@ -43,6 +43,9 @@ Setting ReadSetting(vtkFieldData* arrays, const std::string& what);
 void WriteValue(const char* name, double value, vtkFieldData* out);
 void WriteCount(const char* name, size_t value, vtkFieldData* out);
 
+/** LabelVolumes: one value a label. */
+void WriteLabelVolumes(const double* volumes, size_t count, vtkFieldData* out);
+
 }
 
 #endif

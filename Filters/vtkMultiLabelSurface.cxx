@@ -2,7 +2,6 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -201,13 +200,7 @@ void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
   const std::vector<int32_t> ids(mesh.edge_curves, mesh.edge_curves + mesh.edge_count);
   const int32_t lastCurve = ids.empty() ? -1 : *std::max_element(ids.begin(), ids.end());
   WriteCount("CurveCount", std::max(lastCurve, -1) + 1, field);
-  vtkNew<vtkDoubleArray> volumes;
-  volumes->SetName("LabelVolumes");
-  for (size_t label = 0; label < mesh.label_count; ++label)
-  {
-    volumes->InsertNextValue(mesh.volumes[label]);
-  }
-  field->AddArray(volumes);
+  WriteLabelVolumes(mesh.volumes, mesh.label_count, field);
 
   const mlim_report& report = mesh.report;
   WriteCount("InsertionCount", report.insertion_count, field);

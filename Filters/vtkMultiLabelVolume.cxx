@@ -75,13 +75,7 @@ void WriteVolumeFigures(
     }
     field->AddArray(sizes);
   }
-  vtkNew<vtkDoubleArray> volumes;
-  volumes->SetName("LabelVolumes");
-  for (size_t label = 0; label < volume.label_count; ++label)
-  {
-    volumes->InsertNextValue(volume.label_volumes[label]);
-  }
-  field->AddArray(volumes);
+  WriteLabelVolumes(volume.label_volumes, volume.label_count, field);
 
   const mlim_volume_report& report = volume.report;
   WriteCount("VertexCount", volume.vertex_count, field);

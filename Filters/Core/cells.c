@@ -49,7 +49,6 @@ typedef struct verdict
   mlim_badness badness; /* MLIM_BAD_SIZE, MLIM_BAD_RATIO or MLIM_BAD_NONE */
   double excess;
   double shortest_squared;
-  int has_ball;
 } verdict;
 
 int mlim_cells_is_inside(
@@ -70,6 +69,8 @@ int mlim_cells_is_inside(
   return 1;
 }
 
+/* A cell with a ball vertex may have any ratio: beside small balls points for its sake leave more such
+   cells than they mend. */
 static verdict judge(const cells* c, const mlim_cell* cell)
 {
   verdict out = { .badness = MLIM_BAD_NONE, .shortest_squared = INFINITY };
@@ -78,11 +79,12 @@ static verdict judge(const cells* c, const mlim_cell* cell)
     return out;
   }
   const double* points[4];
+  int has_ball = 0;
   for (int k = 0; k < 4; ++k)
   {
     const mlim_vertex* v = &c->complex->vertices[cell->vertices[k]];
     points[k] = v->point;
-    out.has_ball |= v->kind == MLIM_VERTEX_BALL;
+    has_ball |= v->kind == MLIM_VERTEX_BALL;
     for (int j = 0; j < k; ++j)
     {
       out.shortest_squared =
@@ -98,7 +100,7 @@ static verdict judge(const cells* c, const mlim_cell* cell)
     return out;
   }
   const double bound = c->options->cell_radius_edge_ratio;
-  if (squared > bound * bound * out.shortest_squared)
+  if (!has_ball && squared > bound * bound * out.shortest_squared)
   {
     out.badness = MLIM_BAD_RATIO;
     out.excess = sqrt(squared / out.shortest_squared) / bound;
@@ -260,7 +262,7 @@ static mlim_status count_unresolved(cells* c)
   {
     const verdict v = judge(c, &c->complex->cells[id]);
     c->result.unresolved_size_count += v.badness == MLIM_BAD_SIZE;
-    c->result.unresolved_ratio_count += v.badness == MLIM_BAD_RATIO && !v.has_ball;
+    c->result.unresolved_ratio_count += v.badness == MLIM_BAD_RATIO;
     const mlim_status status =
       id % JUDGE_EVERY == 0 ? mlim_progress(c->context, MLIM_STAGE_VOLUME, c->done) : MLIM_OK;
     if (status != MLIM_OK)

@@ -19,34 +19,56 @@ static const int PAIRS[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 
 /* Below all others. */
 static const double LEAST_SHAPE = -1;
 
-static pieces take_apart(const double* const p[4])
+/* The edges from the first point, and their cross products. */
+typedef struct corner
 {
-  pieces out;
-  double a[3];
-  double b[3];
-  double c[3];
-  mlim_subtract(p[1], p[0], a);
-  mlim_subtract(p[2], p[0], b);
-  mlim_subtract(p[3], p[0], c);
-  /* Inward, in fact; the sign of all four is the same, which is what the angles need. */
-  mlim_cross(b, c, out.normals[1]);
-  mlim_cross(c, a, out.normals[2]);
-  mlim_cross(a, b, out.normals[3]);
-  const double squared[3] = { mlim_dot(a, a), mlim_dot(b, b), mlim_dot(c, c) };
-  double sum[3];
+  double a[3], b[3], c[3];
+  double bc[3], ca[3], ab[3];
+  double volume; /* six times the signed one */
+} corner;
+
+static inline corner take_corner(const double* const p[4])
+{
+  corner out;
+  mlim_subtract(p[1], p[0], out.a);
+  mlim_subtract(p[2], p[0], out.b);
+  mlim_subtract(p[3], p[0], out.c);
+  mlim_cross(out.b, out.c, out.bc);
+  mlim_cross(out.c, out.a, out.ca);
+  mlim_cross(out.a, out.b, out.ab);
+  out.volume = mlim_dot(out.a, out.bc);
+  return out;
+}
+
+/* The circumcentre from the first point, times 2 volume; from the squared lengths of a, b and c. */
+static inline void scaled_center(const corner* at, double aa, double bb, double cc, double out[3])
+{
   for (int k = 0; k < 3; ++k)
   {
-    out.normals[0][k] = -(out.normals[1][k] + out.normals[2][k] + out.normals[3][k]);
-    sum[k] = squared[0] * out.normals[1][k] + squared[1] * out.normals[2][k] +
-             squared[2] * out.normals[3][k];
+    out[k] = aa * at->bc[k] + bb * at->ca[k] + cc * at->ab[k];
   }
-  for (int e = 0; e < 3; ++e)
+}
+
+static pieces take_apart(const double* const p[4])
+{
+  const corner at = take_corner(p);
+  pieces out = { .volume = at.volume,
+    .edges_squared = { mlim_dot(at.a, at.a), mlim_dot(at.b, at.b), mlim_dot(at.c, at.c) } };
+  /* Inward, in fact; the sign of all four is the same, which is what the angles need. */
+  mlim_copy(at.bc, out.normals[1]);
+  mlim_copy(at.ca, out.normals[2]);
+  mlim_copy(at.ab, out.normals[3]);
+  for (int k = 0; k < 3; ++k)
   {
-    out.edges_squared[e] = squared[e];
-    out.edges_squared[e + 3] = mlim_distance_squared(p[PAIRS[e + 3][0]], p[PAIRS[e + 3][1]]);
+    out.normals[0][k] = -(at.bc[k] + at.ca[k] + at.ab[k]);
   }
-  out.volume = mlim_dot(a, out.normals[1]);
-  out.radius_squared = mlim_dot(sum, sum) / (4 * out.volume * out.volume);
+  for (int e = 3; e < 6; ++e)
+  {
+    out.edges_squared[e] = mlim_distance_squared(p[PAIRS[e][0]], p[PAIRS[e][1]]);
+  }
+  double center[3];
+  scaled_center(&at, out.edges_squared[0], out.edges_squared[1], out.edges_squared[2], center);
+  out.radius_squared = mlim_dot(center, center) / (4 * at.volume * at.volume);
   return out;
 }
 
@@ -64,49 +86,33 @@ static double shortest_squared(const pieces* cell)
    sliver removal passes here: no loops, no pieces. */
 double mlim_shape_of(const mlim_shape_bound* bound, const double* const p[4])
 {
-  double a[3];
-  double b[3];
-  double c[3];
-  mlim_subtract(p[1], p[0], a);
-  mlim_subtract(p[2], p[0], b);
-  mlim_subtract(p[3], p[0], c);
-  double bc[3];
-  double ca[3];
-  double ab[3];
-  mlim_cross(b, c, bc);
-  mlim_cross(c, a, ca);
-  mlim_cross(a, b, ab);
-  const double volume = mlim_dot(a, bc);
-  const double aa = mlim_dot(a, a);
-  const double bb = mlim_dot(b, b);
-  const double cc = mlim_dot(c, c);
-  const double dot_ab = mlim_dot(a, b);
-  const double dot_ac = mlim_dot(a, c);
-  const double dot_bc = mlim_dot(b, c);
-  const double ab_ab = aa + bb - 2 * dot_ab; /* squared edges between the other three vertices */
-  const double ac_ac = aa + cc - 2 * dot_ac;
-  const double bc_bc = bb + cc - 2 * dot_bc;
-  const double sum[3] = { bc[0] + ca[0] + ab[0], bc[1] + ca[1] + ab[1], bc[2] + ca[2] + ab[2] };
+  const corner at = take_corner(p);
+  const double aa = mlim_dot(at.a, at.a);
+  const double bb = mlim_dot(at.b, at.b);
+  const double cc = mlim_dot(at.c, at.c);
+  /* Squared edges between the other three vertices. */
+  const double ab_ab = aa + bb - 2 * mlim_dot(at.a, at.b);
+  const double ac_ac = aa + cc - 2 * mlim_dot(at.a, at.c);
+  const double bc_bc = bb + cc - 2 * mlim_dot(at.b, at.c);
+  const double sum[3] = { at.bc[0] + at.ca[0] + at.ab[0], at.bc[1] + at.ca[1] + at.ab[1],
+    at.bc[2] + at.ca[2] + at.ab[2] };
   const double n0 = 1 / mlim_dot(sum, sum);
-  const double n1 = 1 / mlim_dot(bc, bc);
-  const double n2 = 1 / mlim_dot(ca, ca);
-  const double n3 = 1 / mlim_dot(ab, ab);
+  const double n1 = 1 / mlim_dot(at.bc, at.bc);
+  const double n2 = 1 / mlim_dot(at.ca, at.ca);
+  const double n3 = 1 / mlim_dot(at.ab, at.ab);
   const double least = mlim_min(mlim_min(mlim_min(aa * n2 * n3, bb * n1 * n3), cc * n1 * n2),
     mlim_min(mlim_min(ab_ab * n0 * n3, ac_ac * n0 * n2), bc_bc * n0 * n1));
-  const double sine = volume * sqrt(least);
-  if (!(volume > 0) || !(sine > 0))
+  const double sine = at.volume * sqrt(least);
+  if (!(sine > 0))
   {
     return isfinite(sine) ? mlim_max(sine / bound->sine, LEAST_SHAPE) : LEAST_SHAPE;
   }
   const double shortest =
     mlim_min(mlim_min(mlim_min(aa, bb), cc), mlim_min(mlim_min(ab_ab, ac_ac), bc_bc));
   double center[3];
-  for (int k = 0; k < 3; ++k)
-  {
-    center[k] = aa * bc[k] + bb * ca[k] + cc * ab[k];
-  }
+  scaled_center(&at, aa, bb, cc, center);
   const double allowed = bound->radius_edge_ratio * bound->radius_edge_ratio;
-  const double part = allowed * shortest * 4 * volume * volume / mlim_dot(center, center);
+  const double part = allowed * shortest * 4 * at.volume * at.volume / mlim_dot(center, center);
   const double shape = mlim_min(sine / bound->sine, part < 1 ? sqrt(sqrt(part)) : INFINITY);
   return shape < 1 ? shape : 1 + sine;
 }
@@ -128,15 +134,12 @@ double mlim_shape_radius_squared(const double* const points[4])
 
 void mlim_shape_center(const double* const points[4], double out[3])
 {
-  const pieces cell = take_apart(points);
+  const corner at = take_corner(points);
+  double center[3];
+  scaled_center(&at, mlim_dot(at.a, at.a), mlim_dot(at.b, at.b), mlim_dot(at.c, at.c), center);
   for (int k = 0; k < 3; ++k)
   {
-    double sum = 0;
-    for (int e = 0; e < 3; ++e)
-    {
-      sum += cell.edges_squared[e] * cell.normals[e + 1][k];
-    }
-    out[k] = points[0][k] + sum / (2 * cell.volume);
+    out[k] = points[0][k] + center[k] / (2 * at.volume);
   }
 }
 

@@ -11,7 +11,6 @@
 enum
 {
   STRICT_PASSES = 8,
-  MAX_ROUNDS = 3,               /* after them: one ambitious pass and two modest ones each */
   PASSES_WITHOUT_INSERTION = 2, /* flips and moves alone mend most */
   REPORT_EVERY = 256,           /* cells mended between two looks at the host: some 10 ms */
   MAX_STEPS = 6                 /* on one cell, in one pass */
@@ -20,17 +19,22 @@ enum
 /* What counts as a sliver: dihedral angles below 10 or above 170 degrees. */
 static const double SLIVER_SINE = 0.17364817766693033;
 
-/* Bounds as parts of the first ones. After the strict passes less is good enough for what is left:
-   it is locked in by neighbours that are only just good. So these are made better than they need to
-   be, and then it is tried again. */
+/* Bounds as parts of the given ones. At first all is held against them, and a little more, since
+   neighbours suffer when others are mended. Then less is good enough for what is left: it is locked in
+   by neighbours that are only just good. So these are made better than they need to be, and then it
+   is tried again. In the end only what must not be missed counts, the angle of a sliver and the
+   ratio, with a pass before that gives the neighbours room in their ratios. */
 typedef struct aim
 {
   double sine;
   double radius_edge_ratio;
 } aim;
 
-static const aim MODEST = { .sine = 0.75, .radius_edge_ratio = 1 };
-static const aim AMBITIOUS = { .sine = 1.6, .radius_edge_ratio = 0.75 };
+static const aim STRICT = { .sine = 1, .radius_edge_ratio = 0.97 };
+static const aim MODEST = { .sine = 0.75, .radius_edge_ratio = 0.97 };
+static const aim AMBITIOUS = { .sine = 1.6, .radius_edge_ratio = 0.73 };
+static const aim ROOMY = { .sine = 0.75, .radius_edge_ratio = 0.85 };
+static const aim LEAST = { .sine = 0.67, .radius_edge_ratio = 0.999 };
 
 typedef struct bad_cell
 {
@@ -47,8 +51,8 @@ typedef struct remover
   bad_cell* bad;
   size_t bad_count, bad_capacity;
   size_t vertex_limit;
-  mlim_shape_bound bound; /* the first one */
-  const aim* part;        /* of it, in use; NULL: all */
+  mlim_shape_bound bound; /* the given one */
+  const aim* part;        /* of it, in use */
   int pass;               /* below 256 */
   int may_insert;         /* vertices, in this pass */
   mlim_slivers_result result;
@@ -267,10 +271,11 @@ static mlim_status run_pass(remover* r, double from, double to, mlim_context* co
   return status;
 }
 
-static mlim_status run_passes(remover* r, double from, double to, mlim_context* context)
+static mlim_status run_strict(remover* r, double from, double to, mlim_context* context)
 {
   mlim_status status = MLIM_OK;
   double at = from;
+  set_aim(r, &STRICT);
   for (r->pass = 1; r->pass <= STRICT_PASSES && status == MLIM_OK; ++r->pass)
   {
     const double next = at + 0.5 * (to - at);
@@ -278,24 +283,48 @@ static mlim_status run_passes(remover* r, double from, double to, mlim_context* 
     status = run_pass(r, at, next, context);
     at = next;
   }
-  for (int round = 0; round < MAX_ROUNDS && status == MLIM_OK; ++round)
+  return status;
+}
+
+/* Passes over what misses the last aim, and over what has changed round it; and again. */
+typedef struct series
+{
+  const aim* aims[3];
+  size_t count;
+  int round_count;
+} series;
+
+static mlim_status run_series(remover* r, const series* s, double at, mlim_context* context)
+{
+  mlim_status status = MLIM_OK;
+  for (int round = 0; round < s->round_count && status == MLIM_OK; ++round)
   {
-    const aim* const aims[] = { &AMBITIOUS, &MODEST, &MODEST };
-    set_aim(r, &MODEST);
+    set_aim(r, s->aims[s->count - 1]);
     if (touch_bad(r) == 0)
     {
       return MLIM_OK;
     }
-    for (size_t k = 0; k < sizeof aims / sizeof *aims && status == MLIM_OK; ++k, ++r->pass)
+    for (size_t k = 0; k < s->count && status == MLIM_OK; ++k, ++r->pass)
     {
-      set_aim(r, aims[k]);
+      set_aim(r, s->aims[k]);
       /* The ambitious pass of every second round: new vertices shake more loose, but are many. */
-      r->may_insert = aims[k] != &AMBITIOUS || round % 2 == 1;
-      status = run_pass(r, at, to, context);
-      at = to;
+      r->may_insert = s->aims[k] != &AMBITIOUS || round % 2 == 1;
+      status = run_pass(r, at, at, context);
     }
   }
   return status;
+}
+
+static mlim_status run_passes(remover* r, double from, double to, mlim_context* context)
+{
+  static const series locked = { { &AMBITIOUS, &MODEST, &MODEST }, 3, 3 };
+  static const series last = { { &ROOMY, &LEAST }, 2, 3 };
+  mlim_status status = run_strict(r, from, to, context);
+  if (status == MLIM_OK)
+  {
+    status = run_series(r, &locked, to, context);
+  }
+  return status == MLIM_OK ? run_series(r, &last, to, context) : status;
 }
 
 mlim_status mlim_slivers_remove(mlim_solid* solid, size_t vertex_limit, double from, double to,

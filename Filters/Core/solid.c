@@ -4,6 +4,8 @@
 #include "status.h"
 #include "vector.h"
 
+#include <math.h>
+
 mlim_status mlim_solid_create(size_t vertices, size_t cells, mlim_context* context, mlim_solid* out)
 {
   *out = (mlim_solid){ 0 };
@@ -34,15 +36,15 @@ void mlim_solid_free(mlim_solid* solid)
 double mlim_solid_shape(const mlim_solid* solid, const int32_t vertices[4])
 {
   const double* points[4];
-  double part = 1;
+  int has_ball = 0;
   for (int k = 0; k < 4; ++k)
   {
     const size_t v = (size_t)vertices[k];
     points[k] = solid->points + 3 * v;
-    part = v < solid->fixed_count ? mlim_max(part, solid->ratio_parts[v]) : part;
+    has_ball |= v < solid->fixed_count && solid->is_ball[v];
   }
   const mlim_shape_bound bound = { .sine = solid->bound.sine,
-    .radius_edge_ratio = part * solid->bound.radius_edge_ratio };
+    .radius_edge_ratio = has_ball ? INFINITY : solid->bound.radius_edge_ratio };
   return mlim_shape_of(&bound, points);
 }
 

@@ -51,9 +51,8 @@ typedef struct mlim_solid
   mlim_shape_bound bound;
   double* points; /* 3 a vertex */
   size_t vertex_count, vertex_capacity;
-  size_t fixed_count; /* the first vertices are the surface's and stay where they are */
-  /* Borrowed; per fixed vertex: the ratio its cells may have, as part of the bound; at least 1. */
-  const double* ratio_parts;
+  size_t fixed_count;           /* the first vertices are the surface's and stay where they are */
+  const unsigned char* is_ball; /* borrowed; per fixed vertex: its cells may have any ratio */
   mlim_solid_cell* cells;
   size_t cell_count, cell_capacity;
   int32_t* free_cells;

@@ -5,7 +5,6 @@
 #include "memory.h"
 #include "slivers.h"
 #include "status.h"
-#include "triangle.h"
 #include "vector.h"
 
 #include <math.h>
@@ -24,20 +23,14 @@ static const double MENDED = 0.95;
    are reached nearly everywhere, since some neighbours then suffer a little. */
 static const double GOOD_SINE = 0.25881904510252074;
 
-/* Aimed at, of the bound on the radius-edge ratio, so that cells that just miss it are within. */
-static const double RATIO_PART = 0.97;
-
-/* Cells at a bad triangle may have this times its ratio. */
-static const double BAD_TRIANGLE_PART = 1.5;
-
 typedef struct maker
 {
   const mlim_volume_input* input;
   mlim_context* context;
   mlim_solid solid;
-  int32_t* vertices;   /* of the solid, for each of the complex; -1 */
-  int32_t* ids;        /* of the solid's cell, for each of the complex's; -1 */
-  double* ratio_parts; /* per fixed vertex, see mlim_solid */
+  int32_t* vertices;      /* of the solid, for each of the complex; -1 */
+  int32_t* ids;           /* of the solid's cell, for each of the complex's; -1 */
+  unsigned char* is_ball; /* per fixed vertex */
   mlim_volume* out;
 } maker;
 
@@ -102,36 +95,17 @@ static mlim_status take_cells(maker* m)
       cell->vertices[k] = m->vertices[from->vertices[k]];
       cell->neighbors[k] = other == MLIM_NO_CELL ? MLIM_SOLID_NOTHING : m->ids[other];
     }
-    cell->shape = mlim_solid_shape(&m->solid, cell->vertices);
   }
   return status;
 }
 
-static int is_ball(const mlim_mesh* mesh, size_t vertex)
-{
-  return vertex < mesh->vertex_count &&
-         mesh->node_types[vertex] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
-}
-
-/* Cells near balls may have any ratio, and those at triangles that are above it themselves a larger
-   one: nothing could bring them below it. */
-static void find_ratio_parts(maker* m)
+static void find_balls(maker* m)
 {
   const mlim_mesh* mesh = m->input->mesh;
-  const double bound = m->solid.bound.radius_edge_ratio;
   for (size_t v = 0; v < m->solid.fixed_count; ++v)
   {
-    m->ratio_parts[v] = is_ball(mesh, v) ? INFINITY : 1;
-  }
-  for (size_t t = 0; t < mesh->triangle_count; ++t)
-  {
-    const int32_t* v = mesh->triangles + 3 * t;
-    const double ratio = sqrt(mlim_radius_edge_ratio_squared(mesh->vertices + 3 * (size_t)v[0],
-      mesh->vertices + 3 * (size_t)v[1], mesh->vertices + 3 * (size_t)v[2]));
-    for (int k = 0; k < 3 && ratio > bound; ++k)
-    {
-      m->ratio_parts[v[k]] = mlim_max(m->ratio_parts[v[k]], BAD_TRIANGLE_PART * ratio / bound);
-    }
+    m->is_ball[v] =
+      v < mesh->vertex_count && mesh->node_types[v] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
   }
 }
 
@@ -140,8 +114,8 @@ static mlim_status take_solid(maker* m)
   const mlim_complex* complex = m->input->complex;
   m->ids = mlim_allocate(complex->cell_count, sizeof *m->ids);
   m->vertices = mlim_allocate(complex->vertex_count, sizeof *m->vertices);
-  m->ratio_parts = mlim_allocate(complex->vertex_count, sizeof *m->ratio_parts);
-  if (m->ids == NULL || m->vertices == NULL || m->ratio_parts == NULL)
+  m->is_ball = mlim_allocate(complex->vertex_count, sizeof *m->is_ball);
+  if (m->ids == NULL || m->vertices == NULL || m->is_ball == NULL)
   {
     return mlim_fail_memory(m->context, "the volume's cells");
   }
@@ -161,11 +135,11 @@ static mlim_status take_solid(maker* m)
     return status;
   }
   m->solid.bound = (mlim_shape_bound){ .sine = GOOD_SINE,
-    .radius_edge_ratio = RATIO_PART * m->input->options->cell_radius_edge_ratio };
+    .radius_edge_ratio = m->input->options->cell_radius_edge_ratio };
   m->solid.cell_count = count;
-  m->solid.ratio_parts = m->ratio_parts;
+  m->solid.is_ball = m->is_ball;
   take_vertices(m);
-  find_ratio_parts(m);
+  find_balls(m);
   return take_cells(m);
 }
 
@@ -195,7 +169,7 @@ static void measure_cell(maker* m, const mlim_solid_cell* cell)
   {
     points[k] = m->solid.points + 3 * (size_t)cell->vertices[k];
     const size_t v = (size_t)cell->vertices[k];
-    has_ball |= is_ball(m->input->mesh, v);
+    has_ball |= v < m->solid.fixed_count && m->is_ball[v];
   }
   const mlim_shape_figures f = mlim_shape_measure(points);
   report->min_dihedral_angle = mlim_min(report->min_dihedral_angle, f.min_angle);
@@ -301,7 +275,7 @@ mlim_status mlim_volume_make(
   mlim_solid_free(&m.solid);
   mlim_release(m.vertices);
   mlim_release(m.ids);
-  mlim_release(m.ratio_parts);
+  mlim_release(m.is_ball);
   if (status != MLIM_OK && status != MLIM_VERTEX_LIMIT)
   {
     mlim_volume_free(out);

@@ -79,11 +79,11 @@ static mlim_solid make(double height, int is_ring, int is_split)
   static const int32_t pair[2][4] = { { LOW, FIRST, FIRST + 1, FIRST + 2 },
     { HIGH, FIRST + 1, FIRST, FIRST + 2 } };
   static const int32_t pair_neighbors[2][4] = { { 1, -1, -1, -1 }, { 0, -1, -1, -1 } };
-  static const double no_parts[COUNT] = { 1, 1, 1, 1, 1 };
+  static const unsigned char is_ball[COUNT] = { 0 };
   mlim_solid solid;
   CHECK(mlim_solid_create(COUNT + 1, 3, NULL, &solid) == MLIM_OK);
   solid.bound = BOUND;
-  solid.ratio_parts = no_parts;
+  solid.is_ball = is_ball;
   solid.vertex_count = COUNT;
   solid.fixed_count = COUNT;
   for (int v = 0; v < COUNT; ++v)

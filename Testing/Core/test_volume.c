@@ -204,8 +204,40 @@ static void test_ratio(void)
   CHECK(tight.volume.report.insertion_count > loose.volume.report.insertion_count);
   CHECK(tight.volume.report.max_radius_edge_ratio < loose.volume.report.max_radius_edge_ratio);
   CHECK_COUNT(measure(&tight, 20).long_ones, tight.volume.report.unresolved_ratio_count);
+  run_free(&tight);
+  /* Refinement alone leaves some along the surface, whose centres would destroy triangles. */
+  options.remove_slivers = 0;
+  CHECK(make(im, &options, &tight) == MLIM_OK);
+  const size_t left = measure(&tight, 20).long_ones;
+  CHECK_COUNT(left, tight.volume.report.unresolved_ratio_count);
+  CHECK(left < tight.volume.cell_count / 50);
   run_free(&loose);
   run_free(&tight);
+  image_free(im);
+}
+
+/* Refinement leaves the balls to the curves. The cells are so small that it would like to enter. */
+static void test_balls(void)
+{
+  const shape s = shape_of(SHAPE_OCTANTS);
+  image* im = shape_sample(&s);
+  mlim_options options = run_options(1);
+  options.cell_size = 0.4;
+  options.remove_slivers = 0;
+  run r;
+  CHECK(make(im, &options, &r) == MLIM_OK);
+  CHECK(r.balls.ball_count > 0);
+  size_t inside = 0;
+  for (size_t v = r.volume.surface_vertex_count; v < r.volume.vertex_count; ++v)
+  {
+    for (size_t b = 0; b < r.balls.ball_count; ++b)
+    {
+      inside +=
+        mlim_distance(r.volume.vertices + 3 * v, r.balls.centers + 3 * b) < r.balls.radii[b];
+    }
+  }
+  CHECK_COUNT(inside, 0);
+  run_free(&r);
   image_free(im);
 }
 
@@ -297,6 +329,7 @@ int main(void)
   test_label_size();
   test_slivers();
   test_ratio();
+  test_balls();
   test_limit();
   test_block();
   return check_result();

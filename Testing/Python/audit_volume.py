@@ -212,6 +212,7 @@ def audit_volume(image, surface_data, grid):
         max_ratio_away=float(ratios[~near_ball & ~near_sharp].max(initial=0.0)),
         ratio_exceptions_away=int((ratios[~near_ball & ~near_sharp] > 2).sum()),
         ratio_exceptions=int((ratios[~near_ball] > 2).sum()),
+        ball_ratio_exceptions=int((ratios[near_ball] > 2).sum()),
         min_angle=float(angles.min()),
         max_angle=float(angles.max()),
         min_angle_away=float(angles[~near_sharp].min(initial=180.0)),
