@@ -225,8 +225,8 @@ struct mlim_delaunay
   // The sphere decides if it can, else exact arithmetic.
   bool IsInConflict(CellHandle cell) const
   {
-    const double point[3] = { this->point.x(), this->point.y(), this->point.z() };
-    const int side = mlim_power_sphere_side(&cell->info().sphere, point, this->point.weight());
+    const double at[3] = { this->point.x(), this->point.y(), this->point.z() };
+    const int side = mlim_power_sphere_side(&cell->info().sphere, at, this->point.weight());
     return side == 0 ? this->triangulation.IsInConflict(this->point, cell) : side < 0;
   }
 
