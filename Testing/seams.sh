@@ -17,7 +17,7 @@ fail() {
 # two parts of one place do not see each other. A file of two words that is not named belongs to its
 # first one: field_build to field.
 order='
-0 base          mlim vector triangle cubic tie
+0 base          mlim vector faces triangle cubic tie
 1 services      memory status
 2 pieces        scalars label_map distance kernel morphology diffusion indicators samples
 2 pieces        label_sets point_grid
