@@ -138,7 +138,8 @@ static mlim_status cover_spots(build* b, size_t* count)
   {
     return status;
   }
-  status = mlim_spots_keep(&b->refinement, &balls, b->context, &known);
+  status =
+    mlim_known_keep(&b->refinement.complex, &balls, b->refinement.progress, b->context, &known);
   take_balls(b, &balls);
   status = status == MLIM_OK ? refine_from_balls(b, &known) : status;
   mlim_known_free(&known);

@@ -9,10 +9,6 @@
    are three times as many vertices and angles of 8 degrees. */
 static const double QUALITY_GUARD = 1;
 
-/* For topology and distance a point may come nearer: above 0 it is outside the ball. At 1/4 the new
-   edge is not below half the ball's radius. */
-static const double NEAR_GUARD = 0.25;
-
 typedef struct triangle
 {
   double middle[3];
@@ -180,7 +176,7 @@ int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* op
   }
   const int is_topology = badness < MLIM_BAD_SIZE;
   const int is_near = is_topology || badness == MLIM_BAD_DISTANCE;
-  if (power < (is_near ? NEAR_GUARD : QUALITY_GUARD) * t.heaviest)
+  if (power < (is_near ? MLIM_NEAR_GUARD : QUALITY_GUARD) * t.heaviest)
   {
     return 0;
   }

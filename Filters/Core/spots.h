@@ -12,11 +12,4 @@
 mlim_status mlim_spots_cover(const mlim_refinement* refinement, const mlim_balls* balls,
   mlim_context* context, mlim_balls* out, size_t* count);
 
-/* The surface vertices that may stay when the triangulation is made anew from these balls: outside all
-   balls and not in the neighbourhood of a contact, which is sampled anew. */
-mlim_status mlim_spots_keep(const mlim_refinement* refinement, const mlim_balls* balls,
-  mlim_context* context, mlim_known* out);
-
-void mlim_known_free(mlim_known* known);
-
 #endif
