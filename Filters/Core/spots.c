@@ -15,7 +15,7 @@
 static const double REACH = 1.6;
 static const double MARGIN = 0.5;
 static const double SMALLEST = 1;
-static const double LARGEST = 1.8;
+static const double LARGEST = 1.5;
 
 /* A contact misses the centres of others, and they its own, by this factor of the radius. */
 static const double APART = 1.05;

@@ -88,7 +88,7 @@ static void check_box(const run* r, const int32_t dims[3])
 
 static void test_wedges(void)
 {
-  const double angles[] = { 30, 8, 4 };
+  const double angles[] = { 30, 12, 8, 4, 2 };
   const int32_t dims[3] = { 22, 16, 11 };
   for (size_t k = 0; k < sizeof angles / sizeof *angles; ++k)
   {
@@ -99,8 +99,10 @@ static void test_wedges(void)
     CHECK_COUNT(r.mesh.certificate.disk_failure_count, 0);
     CHECK_COUNT(r.mesh.certificate.lost_label_count, 0);
     CHECK_COUNT(r.mesh.report.off_curve_edge_count, 0);
-    /* At 4 degrees the thin end of the wedge, 3 spacings of it, is given up to contacts. */
-    CHECK(angles[k] < 8 || fabs(r.mesh.report.min_dihedral_angle - true_angle()) < 1);
+    /* No part of the thin end, of which 7 spacings are thinner than a quarter of one at 2 degrees, is given
+       up to contacts. */
+    CHECK_BELOW(fabs(r.mesh.report.min_dihedral_angle - true_angle()), 0.1);
+    CHECK_BELOW((double)r.mesh.contact_count, angles[k] < 4 ? 9 : 3);
     check_box(&r, dims);
     CHECK_BELOW((double)r.mesh.vertex_count, 6000);
     run_free(&r);
