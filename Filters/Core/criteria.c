@@ -170,7 +170,10 @@ int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* op
   const double power =
     mlim_distance_squared(t.vertex[0]->point, facet->crossing) - t.vertex[0]->weight;
   const double least = options->smallest_distance * options->smallest_distance;
-  if (power < least)
+  /* A partner across a film may have come nearer to a vertex of its own sheet. Shape alone makes no edge
+     shorter than the facet has, so the triangles there can be bettered without an end to fear. */
+  const int is_graded = badness == MLIM_BAD_RATIO && t.heaviest == 0 && power >= t.shortest_squared;
+  if (power < least && !is_graded)
   {
     return 0;
   }

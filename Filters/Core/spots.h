@@ -1,6 +1,6 @@
-/* Spots that refinement cannot resolve: films and wedges of a third label, and contacts, thinner than
-   the smallest distance of two vertices. Each is covered by a contact: one ball, at which all its
-   sheets meet. The paper has no such spots: it assumes that a ball can always be split. */
+/* Spots that refinement cannot resolve, not with partners across films either: ends of films, and regions
+   that touch, below the smallest distance of two vertices. Each is covered by a contact: one ball, at
+   which all its sheets meet. The paper has no such spots: it assumes that a ball can always be split. */
 #ifndef mlim_spots_h
 #define mlim_spots_h
 

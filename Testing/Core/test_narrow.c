@@ -1,5 +1,6 @@
 /* Sharp angles, thin regions and regions that touch: whole runs with known answers. */
 #include "audit.h"
+#include "random_field.h"
 #include "shapes.h"
 
 static const double SPACING[3] = { 1, 1, 1 };
@@ -198,11 +199,32 @@ static void test_touching_boxes(void)
   }
 }
 
+/* ---- noise ---- */
+
+/* Films and specks below every length, everywhere: what is left of them are contacts, and no regions meet
+   at any other edge off the curves. */
+static void test_noise(void)
+{
+  static random_field f;
+  for (uint64_t seed = 1; seed <= 3; ++seed)
+  {
+    random_field_make(&f, 3, 7, 0, seed);
+    run r;
+    const mlim_options options = run_options(0.7);
+    CHECK(run_grid(&f.grid, &options, NULL, &r) == MLIM_OK);
+    CHECK(r.mesh.contact_count > 0);
+    CHECK_COUNT(r.mesh.report.off_curve_edge_count, 0);
+    CHECK_COUNT(r.mesh.certificate.open_edge_count, 0);
+    run_free(&r);
+  }
+}
+
 int main(void)
 {
   test_wedges();
   test_shells();
   test_rods();
   test_touching_boxes();
+  test_noise();
   return check_result();
 }
