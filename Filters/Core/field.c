@@ -224,7 +224,7 @@ int mlim_field_normal(
     }
     squared += out[k] * out[k];
   }
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3 && squared > 0; ++k)
   {
     out[k] /= sqrt(squared);
   }
