@@ -17,7 +17,7 @@ fail() {
 # two parts of one place do not see each other. A file of two words that is not named belongs to its
 # first one: field_build to field.
 order='
-0 base          mlim vector triangle cubic tie
+0 base          mlim vector faces triangle cubic tie
 1 services      memory status
 2 pieces        scalars label_map distance kernel morphology diffusion indicators samples
 2 pieces        label_sets point_grid
@@ -28,7 +28,7 @@ order='
 5 balls         radius_map span balls
 5 triangulation power_sphere delaunay
 6 criteria      complex sides criteria disk
-7 refinement    queue seeds refine tidy spots zone box cells
+7 refinement    queue seeds known partner refine tidy pinch spots zone box cells
 8 products      volumes edges skin nearest mesh quality certificate
 9 whole         verify volume build
 '

@@ -1,4 +1,6 @@
 #include "balls.h"
+
+#include "ball_list.h"
 #include "label_sets.h"
 #include "memory.h"
 #include "radius_map.h"
@@ -40,9 +42,9 @@ typedef struct covering
   const mlim_curves* curves;
   const mlim_options* options;
   mlim_radius_map map;
-  mlim_balls balls;
+  mlim_ball_list list;
   double* arcs; /* per ball: length along its curve */
-  size_t capacities[7];
+  size_t arc_capacity;
   mlim_span_cover cover; /* of one curve */
   size_t fault_count;
   size_t lowered_count;
@@ -51,7 +53,7 @@ typedef struct covering
 static void covering_free(covering* work)
 {
   mlim_radius_map_free(&work->map);
-  mlim_balls_free(&work->balls);
+  mlim_ball_list_free(&work->list);
   mlim_release(work->arcs);
   mlim_span_cover_free(&work->cover);
 }
@@ -59,57 +61,31 @@ static void covering_free(covering* work)
 static mlim_status add_ball(
   covering* work, const double center[3], double radius, int32_t curve, int32_t set, double arc)
 {
-  mlim_balls* balls = &work->balls;
-  const size_t count = balls->ball_count;
-  if (count >= INT32_MAX ||
-      mlim_reserve(&balls->centers, &work->capacities[0], count + 1, 3 * sizeof(double)) ||
-      mlim_reserve(&balls->radii, &work->capacities[1], count + 1, sizeof(double)) ||
-      mlim_reserve(&balls->ball_curves, &work->capacities[2], count + 1, sizeof(int32_t)) ||
-      mlim_reserve(&balls->ball_sets, &work->capacities[3], count + 1, sizeof(int32_t)) ||
-      mlim_reserve(&work->arcs, &work->capacities[4], count + 1, sizeof(double)))
+  const size_t count = work->list.balls.ball_count;
+  if (mlim_reserve(&work->arcs, &work->arc_capacity, count + 1, sizeof(double)))
   {
     return MLIM_OUT_OF_MEMORY;
   }
-  mlim_copy(center, balls->centers + 3 * count);
-  balls->radii[count] = radius;
-  balls->ball_curves[count] = curve;
-  balls->ball_sets[count] = set;
   work->arcs[count] = arc;
-  ++balls->ball_count;
-  return MLIM_OK;
-}
-
-static mlim_status add_edge(covering* work, int32_t a, int32_t b, int32_t curve)
-{
-  mlim_balls* balls = &work->balls;
-  const size_t count = balls->edge_count;
-  if (mlim_reserve(&balls->edges, &work->capacities[5], count + 1, 2 * sizeof(int32_t)) ||
-      mlim_reserve(&balls->edge_curves, &work->capacities[6], count + 1, sizeof(int32_t)))
-  {
-    return MLIM_OUT_OF_MEMORY;
-  }
-  balls->edges[2 * count] = a;
-  balls->edges[2 * count + 1] = b;
-  balls->edge_curves[count] = curve;
-  ++balls->edge_count;
-  return MLIM_OK;
+  return mlim_ball_list_add(&work->list, center, radius, curve, set);
 }
 
 static mlim_status join_balls(covering* work, size_t curve, size_t first)
 {
   const int32_t* ends = work->map.ends + 2 * curve;
-  const int32_t last = (int32_t)work->balls.ball_count - 1;
+  const int32_t last = (int32_t)work->list.balls.ball_count - 1;
   mlim_status status = MLIM_OK;
   if (ends[0] >= 0)
   {
-    status = add_edge(work, ends[0], (int32_t)first, (int32_t)curve);
+    status = mlim_ball_list_join(&work->list, ends[0], (int32_t)first, (int32_t)curve);
   }
   for (int32_t b = (int32_t)first; b < last && !status; ++b)
   {
-    status = add_edge(work, b, b + 1, (int32_t)curve);
+    status = mlim_ball_list_join(&work->list, b, b + 1, (int32_t)curve);
   }
   return status ? status
-                : add_edge(work, last, ends[1] >= 0 ? ends[1] : (int32_t)first, (int32_t)curve);
+                : mlim_ball_list_join(
+                    &work->list, last, ends[1] >= 0 ? ends[1] : (int32_t)first, (int32_t)curve);
 }
 
 /* A curve of the map, as a span sees it. */
@@ -129,7 +105,7 @@ static mlim_status cover_curve(covering* work, size_t curve)
 {
   const mlim_radius_map* map = &work->map;
   const int32_t* ends = map->ends + 2 * curve;
-  const size_t first = work->balls.ball_count;
+  const size_t first = work->list.balls.ball_count;
   const size_t sample_count = map->offsets[curve + 1] - map->offsets[curve];
   const map_curve on = { .map = map, .curve = curve };
   mlim_span span = { .length = map->arcs[map->offsets[curve + 1] - 1],
@@ -163,8 +139,8 @@ static mlim_status cover_all(covering* work)
 {
   const mlim_curves* curves = work->curves;
   mlim_status status = MLIM_OK;
-  work->balls.ball_count = 0;
-  work->balls.edge_count = 0;
+  work->list.balls.ball_count = 0;
+  work->list.balls.edge_count = 0;
   for (size_t j = 0; j < curves->junction_count && !status; ++j)
   {
     status = add_ball(work, curves->points + 3 * (size_t)curves->junction_points[j],
@@ -180,7 +156,7 @@ static mlim_status cover_all(covering* work)
 /* Lowers the limit where a ball stands. */
 static void lower(covering* work, mlim_radius_limit which, int32_t ball, double radius)
 {
-  const int32_t curve = work->balls.ball_curves[ball];
+  const int32_t curve = work->list.balls.ball_curves[ball];
   const int has_changed =
     curve < 0 ? mlim_radius_map_lower_junction(&work->map, (size_t)ball, radius)
               : mlim_radius_map_lower(&work->map, which, (size_t)curve, work->arcs[ball], radius);
@@ -190,8 +166,8 @@ static void lower(covering* work, mlim_radius_limit which, int32_t ball, double 
 /* Balls of two curves that end at one junction keep apart as a wedge. */
 static mlim_radius_limit limit_between(const covering* work, int32_t a, int32_t b)
 {
-  const int32_t c = work->balls.ball_curves[a];
-  const int32_t d = work->balls.ball_curves[b];
+  const int32_t c = work->list.balls.ball_curves[a];
+  const int32_t d = work->list.balls.ball_curves[b];
   if (c >= 0 && d >= 0 && c != d)
   {
     const int32_t* ends = work->map.ends + 2 * (size_t)c;
@@ -209,7 +185,7 @@ static mlim_radius_limit limit_between(const covering* work, int32_t a, int32_t 
 
 static void separate(covering* work, int32_t a, int32_t b, double distance)
 {
-  const double* radii = work->balls.radii;
+  const double* radii = work->list.balls.radii;
   const mlim_radius_limit which = limit_between(work, a, b);
   const double factor = fmax(APART_BY * distance / (radii[a] + radii[b]), 0.5 * LOWER_BY);
   if (radii[a] <= MUCH_LARGER * radii[b])
@@ -225,7 +201,7 @@ static void separate(covering* work, int32_t a, int32_t b, double distance)
 static void lower_at_fault(void* user, mlim_ball_fault fault, int32_t a, int32_t b, double distance)
 {
   covering* work = user;
-  const double* radii = work->balls.radii;
+  const double* radii = work->list.balls.radii;
   ++work->fault_count;
   switch (fault)
   {
@@ -259,9 +235,9 @@ static mlim_status cover_until_good(covering* work, mlim_context* context)
     status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
     status = status ? status : cover_all(work);
     status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
-    status =
-      status ? status
-             : mlim_balls_examine(work->curves, &work->balls, work->options, lower_at_fault, work);
+    status = status ? status
+                    : mlim_balls_examine(
+                        work->curves, &work->list.balls, work->options, lower_at_fault, work);
     status =
       status ? status : mlim_progress(context, MLIM_STAGE_BALLS, (round + 1.0) / (MAX_ROUNDS + 1));
     if (status || work->lowered_count == 0)
@@ -288,7 +264,7 @@ mlim_status mlim_balls_cover(
   mlim_status status = mlim_progress(context, MLIM_STAGE_BALLS, 0);
   status = status ? status : mlim_radius_map_create(curves, options, context, &work.map);
   status = status ? status : cover_until_good(&work, context);
-  status = status ? status : mlim_sets_copy(&curves->sets, &work.balls.sets);
+  status = status ? status : mlim_sets_copy(&curves->sets, &work.list.balls.sets);
   status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, 1);
   if (status == MLIM_OUT_OF_MEMORY)
   {
@@ -296,8 +272,7 @@ mlim_status mlim_balls_cover(
   }
   if (!status)
   {
-    *out = work.balls;
-    work.balls = (mlim_balls){ 0 };
+    mlim_ball_list_take(&work.list, out);
   }
   covering_free(&work);
   return status;

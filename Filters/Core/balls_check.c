@@ -1,6 +1,7 @@
 #include "balls.h"
+
+#include "ball_grid.h"
 #include "memory.h"
-#include "point_grid.h"
 #include "vector.h"
 
 #include <math.h>
@@ -96,25 +97,18 @@ static int is_contact(const mlim_balls* balls, size_t ball)
 static mlim_status examine_others(const examination* work)
 {
   const mlim_balls* balls = work->balls;
-  mlim_point_grid grid = { 0 };
+  mlim_ball_grid grid = { 0 };
   size_t* starts = NULL;
   int32_t* neighbours = NULL;
-  double largest = 0;
-  for (size_t i = 0; i < balls->ball_count; ++i)
-  {
-    largest = fmax(largest, balls->radii[i]);
-  }
   mlim_status status = list_neighbours(balls, &starts, &neighbours);
-  if (!status && balls->ball_count > 0)
-  {
-    status = mlim_point_grid_create(2 * largest, balls->ball_count, &grid);
-  }
+  status = status ? status : mlim_ball_grid_create(balls, &grid);
   for (size_t i = 0; i < balls->ball_count && !status; ++i)
   {
     const double* center = balls->centers + 3 * i;
     mlim_point_walk walk;
-    for (int32_t j = mlim_point_grid_first(&grid, center, balls->radii[i] + largest, &walk); j >= 0;
-         j = mlim_point_grid_next(&grid, &walk))
+    const double most = balls->radii[i] + grid.largest;
+    for (int32_t j = mlim_point_grid_first(&grid.points, center, most, &walk); j >= 0;
+         j = mlim_point_grid_next(&grid.points, &walk))
     {
       const double reach = balls->radii[i] + balls->radii[j];
       const double d = center_distance(balls, (int32_t)i, j);
@@ -129,9 +123,9 @@ static mlim_status examine_others(const examination* work)
         work->report(work->user, MLIM_BALLS_TOUCH, j, (int32_t)i, d);
       }
     }
-    mlim_point_grid_add(&grid, center, (int32_t)i);
+    mlim_point_grid_add(&grid.points, center, (int32_t)i);
   }
-  mlim_point_grid_free(&grid);
+  mlim_ball_grid_free(&grid);
   mlim_release(starts);
   mlim_release(neighbours);
   return status;

@@ -1,7 +1,9 @@
 #include "balls.h"
+
+#include "ball_grid.h"
+#include "ball_list.h"
 #include "label_sets.h"
 #include "memory.h"
-#include "point_grid.h"
 #include "vector.h"
 
 #include <math.h>
@@ -39,8 +41,7 @@ typedef struct contraction
   int32_t* contact_sets; /* in the table, per contact */
   loose_edge* loose;
   size_t loose_count;
-  mlim_balls balls;
-  size_t capacities[6];
+  mlim_ball_list list;
 } contraction;
 
 static void contraction_free(contraction* work)
@@ -51,7 +52,7 @@ static void contraction_free(contraction* work)
   mlim_release(work->contact_sets);
   mlim_release(work->loose);
   mlim_set_table_free(&work->table);
-  mlim_balls_free(&work->balls);
+  mlim_ball_list_free(&work->list);
 }
 
 static mlim_status add_sets(contraction* work, const mlim_sets* sets)
@@ -89,26 +90,19 @@ static mlim_status create(contraction* work, const mlim_sets* sets)
 static mlim_status find_owners(contraction* work)
 {
   const mlim_balls* old = work->old;
-  double largest = 0;
+  mlim_ball_grid grid;
+  mlim_status status = mlim_ball_grid_fill(old, &grid);
   for (size_t b = 0; b < old->ball_count; ++b)
   {
     work->owners[b] = NOBODY;
-    largest = fmax(largest, old->radii[b]);
   }
-  mlim_point_grid grid = { 0 };
-  mlim_status status =
-    old->ball_count > 0 ? mlim_point_grid_create(2 * largest, old->ball_count, &grid) : MLIM_OK;
-  for (size_t b = 0; b < old->ball_count && !status; ++b)
-  {
-    mlim_point_grid_add(&grid, old->centers + 3 * b, (int32_t)b);
-  }
-  for (size_t c = 0; c < work->contact_count && old->ball_count > 0 && !status; ++c)
+  for (size_t c = 0; c < work->contact_count && !status; ++c)
   {
     const mlim_contact* contact = work->contacts + c;
     mlim_point_walk walk;
-    const double reach = contact->radius + CENTER_MARGIN * largest;
-    for (int32_t b = mlim_point_grid_first(&grid, contact->center, reach, &walk); b >= 0 && !status;
-         b = mlim_point_grid_next(&grid, &walk))
+    const double reach = contact->radius + CENTER_MARGIN * grid.largest;
+    for (int32_t b = mlim_point_grid_first(&grid.points, contact->center, reach, &walk);
+         b >= 0 && !status; b = mlim_point_grid_next(&grid.points, &walk))
     {
       const double d = mlim_distance(old->centers + 3 * (size_t)b, contact->center);
       if (work->owners[b] == NOBODY && d < contact->radius + CENTER_MARGIN * old->radii[b])
@@ -119,45 +113,8 @@ static mlim_status find_owners(contraction* work)
       }
     }
   }
-  mlim_point_grid_free(&grid);
+  mlim_ball_grid_free(&grid);
   return status;
-}
-
-static mlim_status add_ball(
-  contraction* work, const double center[3], double radius, int32_t curve, int32_t set)
-{
-  mlim_balls* balls = &work->balls;
-  const size_t count = balls->ball_count;
-  if (count >= INT32_MAX ||
-      mlim_reserve(&balls->centers, &work->capacities[0], count + 1, 3 * sizeof(double)) ||
-      mlim_reserve(&balls->radii, &work->capacities[1], count + 1, sizeof(double)) ||
-      mlim_reserve(&balls->ball_curves, &work->capacities[2], count + 1, sizeof(int32_t)) ||
-      mlim_reserve(&balls->ball_sets, &work->capacities[3], count + 1, sizeof(int32_t)))
-  {
-    return MLIM_OUT_OF_MEMORY;
-  }
-  mlim_copy(center, balls->centers + 3 * count);
-  balls->radii[count] = radius;
-  balls->ball_curves[count] = curve;
-  balls->ball_sets[count] = set;
-  ++balls->ball_count;
-  return MLIM_OK;
-}
-
-static mlim_status add_edge(contraction* work, int32_t a, int32_t b, int32_t curve)
-{
-  mlim_balls* balls = &work->balls;
-  const size_t count = balls->edge_count;
-  if (mlim_reserve(&balls->edges, &work->capacities[4], count + 1, 2 * sizeof(int32_t)) ||
-      mlim_reserve(&balls->edge_curves, &work->capacities[5], count + 1, sizeof(int32_t)))
-  {
-    return MLIM_OUT_OF_MEMORY;
-  }
-  balls->edges[2 * count] = a;
-  balls->edges[2 * count + 1] = b;
-  balls->edge_curves[count] = curve;
-  ++balls->edge_count;
-  return MLIM_OK;
 }
 
 /* The balls that stay keep their order; the contacts come last. */
@@ -167,14 +124,14 @@ static mlim_status place_balls(contraction* work)
   mlim_status status = MLIM_OK;
   for (size_t b = 0; b < old->ball_count && !status; ++b)
   {
-    work->numbers[b] = (int32_t)work->balls.ball_count;
+    work->numbers[b] = (int32_t)work->list.balls.ball_count;
     if (work->owners[b] == NOBODY)
     {
-      status = add_ball(work, old->centers + 3 * b, old->radii[b], old->ball_curves[b],
-        work->old_sets[old->ball_sets[b]]);
+      status = mlim_ball_list_add(&work->list, old->centers + 3 * b, old->radii[b],
+        old->ball_curves[b], work->old_sets[old->ball_sets[b]]);
     }
   }
-  const int32_t first = (int32_t)work->balls.ball_count;
+  const int32_t first = (int32_t)work->list.balls.ball_count;
   for (size_t b = 0; b < old->ball_count; ++b)
   {
     work->numbers[b] = work->owners[b] == NOBODY ? work->numbers[b] : first + work->owners[b];
@@ -182,7 +139,8 @@ static mlim_status place_balls(contraction* work)
   for (size_t c = 0; c < work->contact_count && !status; ++c)
   {
     const mlim_contact* contact = work->contacts + c;
-    status = add_ball(work, contact->center, contact->radius, MLIM_CONTACT, work->contact_sets[c]);
+    status = mlim_ball_list_add(
+      &work->list, contact->center, contact->radius, MLIM_CONTACT, work->contact_sets[c]);
   }
   return status;
 }
@@ -198,7 +156,7 @@ static mlim_status sort_out_edges(contraction* work)
     const int32_t ends[2] = { work->numbers[a], work->numbers[b] };
     if (work->owners[a] == NOBODY && work->owners[b] == NOBODY)
     {
-      status = add_edge(work, ends[0], ends[1], old->edge_curves[e]);
+      status = mlim_ball_list_join(&work->list, ends[0], ends[1], old->edge_curves[e]);
     }
     else if (ends[0] != ends[1])
     {
@@ -232,23 +190,23 @@ static mlim_status join(contraction* work, const loose_edge* edge)
 {
   const int32_t a = edge->ends[0];
   const int32_t b = edge->ends[1];
-  const double* from = work->balls.centers + 3 * (size_t)a;
-  const double* to = work->balls.centers + 3 * (size_t)b;
-  const double radius = work->balls.radii[a];
-  const double smaller = fmin(radius, work->balls.radii[b]);
+  const double* from = work->list.balls.centers + 3 * (size_t)a;
+  const double* to = work->list.balls.centers + 3 * (size_t)b;
+  const double radius = work->list.balls.radii[a];
+  const double smaller = fmin(radius, work->list.balls.radii[b]);
   const double d = mlim_distance(from, to);
-  const double gap = d - radius - work->balls.radii[b];
+  const double gap = d - radius - work->list.balls.radii[b];
   if (gap < 0)
   {
-    return add_edge(work, a, b, edge->curve);
+    return mlim_ball_list_join(&work->list, a, b, edge->curve);
   }
   double center[3];
   mlim_interpolate(from, to, (radius + 0.5 * gap) / d, center);
-  const int32_t between = (int32_t)work->balls.ball_count;
-  mlim_status status =
-    add_ball(work, center, 0.5 * gap + FILL_OVERLAP * smaller, edge->curve, edge->set);
-  status = status ? status : add_edge(work, a, between, edge->curve);
-  return status ? status : add_edge(work, between, b, edge->curve);
+  const int32_t between = (int32_t)work->list.balls.ball_count;
+  mlim_status status = mlim_ball_list_add(
+    &work->list, center, 0.5 * gap + FILL_OVERLAP * smaller, edge->curve, edge->set);
+  status = status ? status : mlim_ball_list_join(&work->list, a, between, edge->curve);
+  return status ? status : mlim_ball_list_join(&work->list, between, b, edge->curve);
 }
 
 /* Two curves that both lead from one ball to the same contact are one there. */
@@ -280,15 +238,14 @@ mlim_status mlim_balls_contract(const mlim_balls* balls, const mlim_contact* con
   status = status ? status : place_balls(&work);
   status = status ? status : sort_out_edges(&work);
   status = status ? status : join_loose(&work);
-  status = status ? status : mlim_sets_copy(&work.table.sets, &work.balls.sets);
+  status = status ? status : mlim_sets_copy(&work.table.sets, &work.list.balls.sets);
   if (status == MLIM_OUT_OF_MEMORY)
   {
     mlim_fail_memory(context, "the protecting balls");
   }
   if (!status)
   {
-    *out = work.balls;
-    work.balls = (mlim_balls){ 0 };
+    mlim_ball_list_take(&work.list, out);
   }
   contraction_free(&work);
   return status;

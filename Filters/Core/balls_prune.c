@@ -1,8 +1,9 @@
 #include "balls_prune.h"
 
+#include "ball_grid.h"
+#include "ball_list.h"
 #include "label_sets.h"
 #include "memory.h"
-#include "point_grid.h"
 #include "status.h"
 #include "vector.h"
 
@@ -19,7 +20,7 @@ typedef struct pruning
   const unsigned char* is_marked;
   int32_t* numbers; /* new number of each old ball, NOBODY */
   int32_t* links;   /* two neighbours of each old ball on its curve, NOBODY */
-  mlim_balls balls;
+  mlim_ball_list list;
 } pruning;
 
 static void link_ball(pruning* work, int32_t ball, int32_t neighbor)
@@ -54,47 +55,38 @@ static int32_t next_kept(const pruning* work, int32_t from, int32_t ball)
   return NOBODY;
 }
 
-static void add_edge(pruning* work, int32_t a, int32_t b, int32_t curve)
+static mlim_status add_edge(pruning* work, int32_t a, int32_t b, int32_t curve)
 {
-  mlim_balls* balls = &work->balls;
-  balls->edges[2 * balls->edge_count] = work->numbers[a];
-  balls->edges[2 * balls->edge_count + 1] = work->numbers[b];
-  balls->edge_curves[balls->edge_count++] = curve;
+  return mlim_ball_list_join(&work->list, work->numbers[a], work->numbers[b], curve);
 }
 
-static void keep_balls(pruning* work)
+static mlim_status keep_balls(pruning* work)
 {
   const mlim_balls* old = work->old;
-  mlim_balls* balls = &work->balls;
-  for (size_t b = 0; b < old->ball_count; ++b)
+  mlim_status status = MLIM_OK;
+  for (size_t b = 0; b < old->ball_count && !status; ++b)
   {
-    work->numbers[b] = NOBODY;
-    if (work->is_marked[b])
+    work->numbers[b] = work->is_marked[b] ? NOBODY : (int32_t)work->list.balls.ball_count;
+    if (!work->is_marked[b])
     {
-      continue;
+      status = mlim_ball_list_add(
+        &work->list, old->centers + 3 * b, old->radii[b], old->ball_curves[b], old->ball_sets[b]);
     }
-    const size_t n = balls->ball_count++;
-    work->numbers[b] = (int32_t)n;
-    memcpy(balls->centers + 3 * n, old->centers + 3 * b, 3 * sizeof *balls->centers);
-    balls->radii[n] = old->radii[b];
-    balls->ball_curves[n] = old->ball_curves[b];
-    balls->ball_sets[n] = old->ball_sets[b];
   }
+  return status;
 }
 
-static void keep_edges(pruning* work)
+static mlim_status keep_edges(pruning* work)
 {
   const mlim_balls* old = work->old;
-  for (size_t e = 0; e < old->edge_count; ++e)
+  mlim_status status = MLIM_OK;
+  for (size_t e = 0; e < old->edge_count && !status; ++e)
   {
     const int32_t a = old->edges[2 * e];
     const int32_t b = old->edges[2 * e + 1];
     if (work->is_marked[a] == work->is_marked[b])
     {
-      if (!work->is_marked[a])
-      {
-        add_edge(work, a, b, old->edge_curves[e]);
-      }
+      status = work->is_marked[a] ? MLIM_OK : add_edge(work, a, b, old->edge_curves[e]);
       continue;
     }
     const int32_t kept = work->is_marked[a] ? b : a;
@@ -102,37 +94,22 @@ static void keep_edges(pruning* work)
     /* Each bridge is found from both its ends. */
     if (other != NOBODY && kept < other)
     {
-      add_edge(work, kept, other, old->edge_curves[e]);
+      status = add_edge(work, kept, other, old->edge_curves[e]);
     }
   }
-}
-
-static mlim_status allocate(pruning* work)
-{
-  const mlim_balls* old = work->old;
-  mlim_balls* balls = &work->balls;
-  work->numbers = mlim_allocate(old->ball_count, sizeof *work->numbers);
-  work->links = mlim_allocate(old->ball_count, 2 * sizeof *work->links);
-  balls->centers = mlim_allocate(old->ball_count, 3 * sizeof *balls->centers);
-  balls->radii = mlim_allocate(old->ball_count, sizeof *balls->radii);
-  balls->ball_curves = mlim_allocate(old->ball_count, sizeof *balls->ball_curves);
-  balls->ball_sets = mlim_allocate(old->ball_count, sizeof *balls->ball_sets);
-  balls->edges = mlim_allocate(old->edge_count, 2 * sizeof *balls->edges);
-  balls->edge_curves = mlim_allocate(old->edge_count, sizeof *balls->edge_curves);
-  const int is_complete = work->numbers != NULL && work->links != NULL && balls->centers != NULL &&
-                          balls->radii != NULL && balls->ball_curves != NULL &&
-                          balls->ball_sets != NULL && balls->edges != NULL &&
-                          balls->edge_curves != NULL;
-  return is_complete ? mlim_sets_copy(&old->sets, &balls->sets) : MLIM_OUT_OF_MEMORY;
+  return status;
 }
 
 mlim_status mlim_balls_prune(
   const mlim_balls* balls, const unsigned char* is_marked, mlim_context* context, mlim_balls* out)
 {
   *out = (mlim_balls){ 0 };
-  pruning work = { .old = balls, .is_marked = is_marked };
-  const mlim_status status = allocate(&work);
-  if (status == MLIM_OK)
+  pruning work = { .old = balls,
+    .is_marked = is_marked,
+    .numbers = mlim_allocate(balls->ball_count, sizeof *work.numbers),
+    .links = mlim_allocate(balls->ball_count, 2 * sizeof *work.links) };
+  mlim_status status = work.numbers && work.links ? MLIM_OK : MLIM_OUT_OF_MEMORY;
+  if (!status)
   {
     memset(work.links, 0xff, balls->ball_count * 2 * sizeof *work.links);
     for (size_t e = 0; e < balls->edge_count; ++e)
@@ -140,18 +117,18 @@ mlim_status mlim_balls_prune(
       link_ball(&work, balls->edges[2 * e], balls->edges[2 * e + 1]);
       link_ball(&work, balls->edges[2 * e + 1], balls->edges[2 * e]);
     }
-    keep_balls(&work);
-    keep_edges(&work);
-    *out = work.balls;
+    status = keep_balls(&work);
   }
-  else
+  status = status ? status : keep_edges(&work);
+  status = status ? status : mlim_sets_copy(&balls->sets, &work.list.balls.sets);
+  if (!status)
   {
-    mlim_balls_free(&work.balls);
-    (void)mlim_fail_memory(context, "the protecting balls");
+    mlim_ball_list_take(&work.list, out);
   }
+  mlim_ball_list_free(&work.list);
   mlim_release(work.numbers);
   mlim_release(work.links);
-  return status;
+  return status ? mlim_fail_memory(context, "the protecting balls") : MLIM_OK;
 }
 
 /* Of two that hold each other's centre, which equal ones at one place do, the first one stays. */
@@ -166,31 +143,19 @@ static int is_held(const mlim_balls* balls, size_t ball, size_t by)
 mlim_status mlim_balls_find_held(
   const mlim_balls* balls, mlim_context* context, unsigned char* is_marked, size_t* count)
 {
-  mlim_point_grid grid = { 0 };
-  double largest = 0;
+  mlim_ball_grid grid;
   *count = 0;
-  for (size_t b = 0; b < balls->ball_count; ++b)
-  {
-    is_marked[b] = 0;
-    largest = mlim_max(largest, balls->radii[b]);
-  }
-  if (balls->ball_count == 0)
-  {
-    return MLIM_OK;
-  }
-  if (mlim_point_grid_create(2 * largest, balls->ball_count, &grid) != MLIM_OK)
+  if (mlim_ball_grid_fill(balls, &grid) != MLIM_OK)
   {
     return mlim_fail_memory(context, "the protecting balls");
   }
+  memset(is_marked, 0, balls->ball_count);
   for (size_t b = 0; b < balls->ball_count; ++b)
   {
-    mlim_point_grid_add(&grid, balls->centers + 3 * b, (int32_t)b);
-  }
-  for (size_t b = 0; b < balls->ball_count; ++b)
-  {
+    const double* center = balls->centers + 3 * b;
     mlim_point_walk walk;
-    for (int32_t q = mlim_point_grid_first(&grid, balls->centers + 3 * b, largest, &walk); q >= 0;
-         q = mlim_point_grid_next(&grid, &walk))
+    for (int32_t q = mlim_point_grid_first(&grid.points, center, grid.largest, &walk); q >= 0;
+         q = mlim_point_grid_next(&grid.points, &walk))
     {
       if ((size_t)q != b && !is_marked[b] && is_held(balls, b, (size_t)q))
       {
@@ -199,6 +164,6 @@ mlim_status mlim_balls_find_held(
       }
     }
   }
-  mlim_point_grid_free(&grid);
+  mlim_ball_grid_free(&grid);
   return MLIM_OK;
 }

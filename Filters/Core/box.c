@@ -1,5 +1,6 @@
 #include "box.h"
 
+#include "faces.h"
 #include "status.h"
 #include "vector.h"
 #include "zone.h"
@@ -28,18 +29,6 @@ typedef struct filler
   double spacing; /* of the lattice */
   int32_t near;   /* a cell to search from */
 } filler;
-
-unsigned mlim_box_faces(const mlim_complex* complex, const double point[3])
-{
-  const double* size = mlim_field_grid_of(complex->oracle.field)->size;
-  unsigned faces = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    faces |= point[k] <= 0 ? 1u << (2 * k) : 0;
-    faces |= point[k] >= size[k] ? 2u << (2 * k) : 0;
-  }
-  return faces;
-}
 
 /* Inserts the point if it lies in the background and keeps the distance. */
 static mlim_status insert(filler* f, const double point[3], double distance, int* is_there)
@@ -121,7 +110,7 @@ static int reaches_in(const mlim_complex* complex, const mlim_cell* cell, double
       ++far_count;
       continue;
     }
-    const unsigned faces = mlim_box_faces(complex, v->point);
+    const unsigned faces = mlim_faces_at(size, v->point);
     if (inmost == NULL || (common & faces) == 0)
     {
       others = faces == 0 ? 63 : common;

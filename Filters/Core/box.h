@@ -9,7 +9,4 @@
    MLIM_VERTEX_LIMIT: stopped early, all is valid. */
 mlim_status mlim_box_fill(mlim_complex* complex, double size, mlim_context* context, size_t* left);
 
-/* Bits of the faces of the box on which a point lies. */
-unsigned mlim_box_faces(const mlim_complex* complex, const double point[3]);
-
 #endif

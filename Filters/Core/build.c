@@ -3,6 +3,7 @@
 #include "certificate.h"
 #include "memory.h"
 #include "mesh.h"
+#include "pinch.h"
 #include "quality.h"
 #include "refine.h"
 #include "seeds.h"
@@ -141,7 +142,8 @@ static mlim_status cover_spots(build* b, size_t* count)
   {
     return status;
   }
-  status = mlim_spots_keep(&b->refinement, &balls, b->context, &known);
+  status =
+    mlim_known_keep(&b->refinement.complex, &balls, b->refinement.progress, b->context, &known);
   take_balls(b, &balls);
   status = status == MLIM_OK ? refine_from_balls(b, &known) : status;
   mlim_known_free(&known);
@@ -238,6 +240,22 @@ static mlim_status tidy(build* b, mlim_mesh* out)
   return mlim_tidy_run(&b->refinement, b->context, &b->relabeled_cell_count);
 }
 
+static mlim_status settle_pinches(build* b, mlim_mesh* out)
+{
+  (void)out;
+  mlim_balls balls;
+  size_t count;
+  const mlim_status status = mlim_pinch_run(&b->refinement, b->context, &balls, &count);
+  if (status == MLIM_OK && count > 0)
+  {
+    mlim_balls_free(&b->balls);
+    b->balls = balls;
+    b->used_balls = &b->balls;
+    b->refinement.complex.balls = &b->balls;
+  }
+  return status;
+}
+
 static mlim_status read(build* b, mlim_mesh* out)
 {
   const size_t count = b->refinement.complex.vertex_count;
@@ -298,8 +316,8 @@ static mlim_status certify(build* b, mlim_mesh* out)
 static mlim_status read_and_measure(build* b, mlim_mesh* out)
 {
   /* Certifying reports the rest of the stage itself. */
-  mlim_status (*const steps[])(build*, mlim_mesh*) = { tidy, read, find_edges, find_patches,
-    settle_edges, measure_quality, count_disks, certify };
+  mlim_status (*const steps[])(build*, mlim_mesh*) = { tidy, settle_pinches, read, find_edges,
+    find_patches, settle_edges, measure_quality, count_disks, certify };
   const size_t count = sizeof steps / sizeof *steps;
   mlim_status status = MLIM_OK;
   for (size_t k = 0; k < count && status == MLIM_OK; ++k)

@@ -1,3 +1,4 @@
+#include "faces.h"
 #include "grow.h"
 #include "memory.h"
 #include "point_grid.h"
@@ -60,17 +61,6 @@ static void cleaning_free(cleaning* work)
   mlim_release(work->pairs);
 }
 
-static unsigned box_faces(const double point[3], const double size[3])
-{
-  unsigned faces = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    faces |= point[k] <= 0 ? 1u << (2 * k) : 0;
-    faces |= point[k] >= size[k] ? 2u << (2 * k) : 0;
-  }
-  return faces;
-}
-
 static mlim_status cleaning_create(cleaning* work)
 {
   const mlim_network* network = work->network;
@@ -89,7 +79,7 @@ static mlim_status cleaning_create(cleaning* work)
     const double* point = network->points + 3 * p;
     work->parents[p] = (int32_t)p;
     cluster* c = work->clusters + p;
-    *c = (cluster){ .count = 1, .faces = box_faces(point, work->size), .position = (int32_t)p };
+    *c = (cluster){ .count = 1, .faces = mlim_faces_at(work->size, point), .position = (int32_t)p };
     mlim_copy(point, c->low);
     mlim_copy(point, c->high);
     mlim_copy(point, c->sum);
@@ -217,11 +207,7 @@ static int is_better(const cleaning* work, const cluster* c, int32_t a, int32_t 
   for (int i = 0; i < 2; ++i)
   {
     const double* point = work->network->points + 3 * (size_t)points[i];
-    const unsigned faces = box_faces(point, work->size);
-    for (int f = 0; f < 6; ++f)
-    {
-      face_counts[i] += (int)(faces >> f & 1u);
-    }
+    face_counts[i] = mlim_faces_count(mlim_faces_at(work->size, point));
     const double mean[3] = { c->sum[0] / c->count, c->sum[1] / c->count, c->sum[2] / c->count };
     distances[i] = mlim_distance_squared(point, mean);
   }

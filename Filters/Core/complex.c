@@ -1,5 +1,6 @@
 #include "complex.h"
 
+#include "faces.h"
 #include "memory.h"
 #include "status.h"
 #include "vector.h"
@@ -76,27 +77,12 @@ int32_t mlim_complex_face(const mlim_complex* complex, int32_t cell, int index)
 {
   const double* size = mlim_field_grid_of(complex->oracle.field)->size;
   const int32_t* v = complex->cells[cell].vertices;
-  for (int32_t face = 0; face < 6; ++face)
+  unsigned faces = 63;
+  for (int k = 1; k < 4 && faces != 0; ++k)
   {
-    /* Points are put on a face exactly. */
-    const int axis = face >> 1;
-    const double plane = face & 1 ? size[axis] : 0;
-    int k = 1;
-    while (k < 4)
-    {
-      const double x = complex->vertices[v[(index + k) & 3]].point[axis];
-      if (x < plane || x > plane)
-      {
-        break;
-      }
-      ++k;
-    }
-    if (k == 4)
-    {
-      return face;
-    }
+    faces &= mlim_faces_at(size, complex->vertices[v[(index + k) & 3]].point);
   }
-  return -1;
+  return mlim_faces_first(faces);
 }
 
 static int has_code(const mlim_balls* balls, int32_t set, int32_t code)

@@ -9,10 +9,6 @@
    are three times as many vertices and angles of 8 degrees. */
 static const double QUALITY_GUARD = 1;
 
-/* For topology and distance a point may come nearer: above 0 it is outside the ball. At 1/4 the new
-   edge is not below half the ball's radius. */
-static const double NEAR_GUARD = 0.25;
-
 typedef struct triangle
 {
   double middle[3];
@@ -174,13 +170,16 @@ int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* op
   const double power =
     mlim_distance_squared(t.vertex[0]->point, facet->crossing) - t.vertex[0]->weight;
   const double least = options->smallest_distance * options->smallest_distance;
-  if (power < least)
+  /* A partner across a film may have come nearer to a vertex of its own sheet. Shape alone makes no edge
+     shorter than the facet has, so the triangles there can be bettered without an end to fear. */
+  const int is_graded = badness == MLIM_BAD_RATIO && t.heaviest == 0 && power >= t.shortest_squared;
+  if (power < least && !is_graded)
   {
     return 0;
   }
   const int is_topology = badness < MLIM_BAD_SIZE;
   const int is_near = is_topology || badness == MLIM_BAD_DISTANCE;
-  if (power < (is_near ? NEAR_GUARD : QUALITY_GUARD) * t.heaviest)
+  if (power < (is_near ? MLIM_NEAR_GUARD : QUALITY_GUARD) * t.heaviest)
   {
     return 0;
   }

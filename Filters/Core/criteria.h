@@ -5,6 +5,10 @@
 
 #include "complex.h"
 
+/* For topology and distance a point keeps at least this power distance to a ball, in its squared radius:
+   above 0 it is outside the ball. At 1/4 the new edge is not below half the ball's radius. */
+static const double MLIM_NEAR_GUARD = 0.25;
+
 typedef enum mlim_badness
 {
   MLIM_BAD_FAR,       /* has a vertex that stands for the outside */

@@ -268,7 +268,8 @@ static mlim_status find_in_square(size_t count, size_t width, int depth, const d
   return MLIM_OK;
 }
 
-/* Prunes into row 0 of the buffers and adds the bonus. */
+/* Adds the bonus and prunes, in row 0 of the buffers. In this order: a label that another one beats by
+   less than the bonuses' difference, as rounding makes it where two tie, has to stay. */
 static mlim_status start(
   const mlim_corners* from, size_t corner_count, mlim_face_work* work, size_t* count)
 {
@@ -278,14 +279,17 @@ static mlim_status start(
   {
     return MLIM_OUT_OF_MEMORY;
   }
-  *count = prune(from, corner_count, work->labels, work->values);
-  for (size_t l = 0; l < *count; ++l)
+  for (size_t l = 0; l < from->count; ++l)
   {
+    work->labels[l] = from->labels[l];
     for (size_t c = 0; c < corner_count; ++c)
     {
-      work->values[corner_count * l + c] += bonus(work->labels[l]);
+      work->values[corner_count * l + c] =
+        from->values[corner_count * l + c] + bonus(from->labels[l]);
     }
   }
+  const mlim_corners all = { .count = from->count, .labels = work->labels, .values = work->values };
+  *count = prune(&all, corner_count, work->labels, work->values);
   return MLIM_OK;
 }
 

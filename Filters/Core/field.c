@@ -162,6 +162,73 @@ static int find_cell(const mlim_field* field, const double point[3], int32_t cel
   return 1;
 }
 
+/* Corner values of f_first - f_second in a mixed cell. 0: it does not list both. */
+static int difference_of(
+  const uint32_t* entry, uint32_t word, int32_t first, int32_t second, double out[8])
+{
+  const uint32_t* values[2] = { NULL, NULL };
+  if (!(word & (uint32_t)MANY))
+  {
+    const int32_t pair[2] = { (int32_t)(entry[0] & 0xffffu), (int32_t)(entry[0] >> 16) };
+    const double sign = first == pair[0] ? 1 : -1;
+    for (int c = 0; c < 8; ++c)
+    {
+      out[c] = sign * (double)field_float(entry[1 + c]);
+    }
+    return (first == pair[0] && second == pair[1]) || (first == pair[1] && second == pair[0]);
+  }
+  const uint32_t count = entry[0];
+  for (uint32_t n = 0; n < count; ++n)
+  {
+    const int32_t label = (int32_t)entry[1 + n];
+    const uint32_t* own = entry + 1 + count + 8 * (size_t)n;
+    values[0] = label == first ? own : values[0];
+    values[1] = label == second ? own : values[1];
+  }
+  for (int c = 0; c < 8 && values[0] != NULL && values[1] != NULL; ++c)
+  {
+    out[c] = (double)field_float(values[0][c]) - (double)field_float(values[1][c]);
+  }
+  return values[0] != NULL && values[1] != NULL;
+}
+
+int mlim_field_normal(
+  const mlim_field* field, const double point[3], int32_t first, int32_t second, double out[3])
+{
+  int32_t cell[3];
+  double at[3];
+  double v[8];
+  if (!find_cell(field, point, cell, at))
+  {
+    return 0;
+  }
+  const uint32_t word = field_cell_word(field, cell, NULL);
+  if (!(word & (uint32_t)MIXED) ||
+      !difference_of(field_pool_entry(field, cell, word), word, first, second, v))
+  {
+    return 0;
+  }
+  double squared = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int a = (k + 1) % 3;
+    const int b = (k + 2) % 3;
+    out[k] = 0;
+    for (int c = 0; c < 4; ++c)
+    {
+      const int low = (c & 1) << a | (c >> 1) << b;
+      const double share = (c & 1 ? at[a] : 1 - at[a]) * (c >> 1 ? at[b] : 1 - at[b]);
+      out[k] += share * (v[low | 1 << k] - v[low]) * field->grid.inverse_spacing[k];
+    }
+    squared += out[k] * out[k];
+  }
+  for (int k = 0; k < 3 && squared > 0; ++k)
+  {
+    out[k] /= sqrt(squared);
+  }
+  return squared > 0;
+}
+
 int32_t mlim_field_label(const mlim_field* field, const double point[3])
 {
   int32_t cell[3];

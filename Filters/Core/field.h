@@ -52,4 +52,9 @@ const uint16_t* mlim_field_point_labels(const mlim_field* field);
    0 in a mixed cell. */
 int32_t mlim_field_label_near(const mlim_field* field, const double point[3], float* clearance);
 
+/* The direction, of length 1, in which the first of two labels gains most on the second at a point. 0: there
+   is none, or the point's cell does not list both. */
+int mlim_field_normal(
+  const mlim_field* field, const double point[3], int32_t first, int32_t second, double out[3]);
+
 #endif

@@ -1,6 +1,7 @@
 #include "refine.h"
 
 #include "memory.h"
+#include "partner.h"
 #include "status.h"
 #include "vector.h"
 
@@ -220,6 +221,43 @@ static mlim_status enqueue_all(mlim_refinement* r, mlim_context* context)
   return MLIM_OK;
 }
 
+static mlim_status enqueue_fresh(mlim_refinement* r, mlim_context* context)
+{
+  for (size_t k = 0; k < r->complex.fresh_count; ++k)
+  {
+    if (enqueue(r, r->complex.fresh[k]))
+    {
+      return mlim_fail_memory(context, "the queue of facets");
+    }
+  }
+  return MLIM_OK;
+}
+
+/* Inserts the vertex of the last probe. */
+static mlim_status commit(mlim_refinement* r, mlim_context* context)
+{
+  const mlim_status status = mlim_complex_commit(&r->complex, context);
+  r->insertion_count += status == MLIM_OK;
+  return status == MLIM_OK ? enqueue_fresh(r, context) : status;
+}
+
+/* The partners of a vertex that was inserted just now. */
+static mlim_status insert_partners(
+  mlim_refinement* r, const mlim_partners* partners, mlim_context* context)
+{
+  const int32_t vertex = (int32_t)r->complex.vertex_count - 1;
+  mlim_status status = MLIM_OK;
+  for (size_t k = 0; k < partners->count && status == MLIM_OK; ++k)
+  {
+    int is_there;
+    status = mlim_partner_insert(
+      &r->complex, r->options, &partners->vertices[k], vertex, context, &is_there);
+    r->insertion_count += (size_t)is_there;
+    status = is_there ? enqueue_fresh(r, context) : status;
+  }
+  return status;
+}
+
 static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_context* context)
 {
   mlim_complex* complex = &r->complex;
@@ -236,20 +274,13 @@ static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_cont
     status =
       mlim_complex_probe(complex, &vertex, sides[k], MLIM_START_IN_CONFLICT, context, &is_found);
   }
-  if (!is_found)
+  mlim_partners partners;
+  if (!is_found || !mlim_partners_find(complex, r->options, &vertex, &partners))
   {
     return status;
   }
-  status = mlim_complex_commit(complex, context);
-  r->insertion_count += status == MLIM_OK;
-  for (size_t k = 0; k < complex->fresh_count && status == MLIM_OK; ++k)
-  {
-    if (enqueue(r, complex->fresh[k]))
-    {
-      status = mlim_fail_memory(context, "the queue of facets");
-    }
-  }
-  return status;
+  status = commit(r, context);
+  return status == MLIM_OK ? insert_partners(r, &partners, context) : status;
 }
 
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context)

@@ -4,6 +4,7 @@
 #define mlim_refine_h
 
 #include "disk.h"
+#include "known.h"
 #include "queue.h"
 
 typedef enum mlim_goal
@@ -25,17 +26,7 @@ typedef struct mlim_refinement
   double progress;          /* last reported */
 } mlim_refinement;
 
-/* What is known beforehand, from a pass with other balls: points on sheets, and the progress that was
-   reported, below which it does not fall. */
-typedef struct mlim_known
-{
-  double progress;
-  size_t count;
-  double* points; /* 3 each */
-  mlim_sheet* sheets;
-} mlim_known;
-
-/* Inserts the balls and then the known points, records the complex; the caller seeds it. Balls that lie
+/* Inserts the balls and then what is known from a pass with other balls, records the complex; the caller seeds it. Balls that lie
    inside others or hold the centre of one are marked (one byte each) and counted; if there are any,
    they have to be taken out and the start made again: nothing is recorded then. */
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,

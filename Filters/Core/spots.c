@@ -1,8 +1,9 @@
 #include "spots.h"
 
+#include "ball_grid.h"
+#include "faces.h"
 #include "label_sets.h"
 #include "memory.h"
-#include "point_grid.h"
 #include "status.h"
 #include "vector.h"
 
@@ -14,14 +15,15 @@
 static const double REACH = 1.6;
 static const double MARGIN = 0.5;
 static const double SMALLEST = 1;
-static const double LARGEST = 1.8;
+static const double LARGEST = 1.5;
 
 /* A contact misses the centres of others, and they its own, by this factor of the radius. */
 static const double APART = 1.05;
 
-/* Radii round a contact, and power distance to any ball in squared radii, within which no vertex stays. */
-static const double ANEW = 3;
-static const double OUTSIDE = 0.25;
+enum
+{
+  LOOK_EVERY = 65536 /* facets between two looks at the host: about 20 ms */
+};
 
 /* Where a facet crosses an interface. */
 typedef struct spot_point
@@ -37,7 +39,6 @@ typedef struct spotting
   const mlim_field_grid* grid;
   const mlim_balls* balls;
   double unit; /* the smallest distance */
-  double largest_ball;
   spot_point* points;
   size_t point_count, point_capacity;
   int32_t* members; /* of the spot at work */
@@ -46,7 +47,7 @@ typedef struct spotting
   size_t contact_count;
   mlim_set_table table;
   mlim_point_grid point_grid;
-  mlim_point_grid ball_grid;
+  mlim_ball_grid ball_grid;
   mlim_point_grid contact_grid;
 } spotting;
 
@@ -57,24 +58,35 @@ static void spotting_free(spotting* s)
   mlim_release(s->contacts);
   mlim_set_table_free(&s->table);
   mlim_point_grid_free(&s->point_grid);
-  mlim_point_grid_free(&s->ball_grid);
+  mlim_ball_grid_free(&s->ball_grid);
   mlim_point_grid_free(&s->contact_grid);
 }
 
-static mlim_status gather_points(spotting* s)
+static int is_unresolved(const spotting* s, const mlim_facet* facet)
+{
+  const mlim_complex* complex = &s->refinement->complex;
+  const mlim_options* options = s->refinement->options;
+  if (!facet->is_alive)
+  {
+    return 0;
+  }
+  const mlim_badness badness = mlim_criteria_judge(complex, options, facet).badness;
+  return (badness == MLIM_BAD_CROSSINGS || badness == MLIM_BAD_SHEET) &&
+         !mlim_criteria_may_insert(complex, options, facet, badness);
+}
+
+static mlim_status gather_points(spotting* s, mlim_context* context)
 {
   const mlim_complex* complex = &s->refinement->complex;
   for (size_t f = 1; f < complex->facet_count; ++f)
   {
     const mlim_facet* facet = &complex->facets[f];
-    if (!facet->is_alive)
+    if (f % LOOK_EVERY == 0 &&
+        mlim_progress(context, MLIM_STAGE_SURFACE, s->refinement->progress) != MLIM_OK)
     {
-      continue;
+      return MLIM_CANCELLED;
     }
-    const mlim_options* options = s->refinement->options;
-    const mlim_badness badness = mlim_criteria_judge(complex, options, facet).badness;
-    if ((badness != MLIM_BAD_CROSSINGS && badness != MLIM_BAD_SHEET) ||
-        mlim_criteria_may_insert(complex, options, facet, badness))
+    if (!is_unresolved(s, facet))
     {
       continue;
     }
@@ -93,25 +105,16 @@ static mlim_status create_grids(spotting* s)
 {
   s->members = mlim_allocate(s->point_count, sizeof *s->members);
   s->contacts = mlim_allocate(s->point_count, sizeof *s->contacts);
-  for (size_t b = 0; b < s->balls->ball_count; ++b)
-  {
-    s->largest_ball = fmax(s->largest_ball, s->balls->radii[b]);
-  }
   if (s->members == NULL || s->contacts == NULL ||
       mlim_point_grid_create(REACH * s->unit, s->point_count, &s->point_grid) != MLIM_OK ||
       mlim_point_grid_create(2 * LARGEST * s->unit, s->point_count, &s->contact_grid) != MLIM_OK ||
-      mlim_point_grid_create(
-        fmax(2 * s->largest_ball, s->unit), s->balls->ball_count + 1, &s->ball_grid) != MLIM_OK)
+      mlim_ball_grid_fill(s->balls, &s->ball_grid) != MLIM_OK)
   {
     return MLIM_OUT_OF_MEMORY;
   }
   for (size_t p = 0; p < s->point_count; ++p)
   {
     mlim_point_grid_add(&s->point_grid, s->points[p].point, (int32_t)p);
-  }
-  for (size_t b = 0; b < s->balls->ball_count; ++b)
-  {
-    mlim_point_grid_add(&s->ball_grid, s->balls->centers + 3 * b, (int32_t)b);
   }
   return MLIM_OK;
 }
@@ -131,14 +134,9 @@ static void find_members(spotting* s, const double first[3])
   }
 }
 
-static int count_faces(const spotting* s, const double point[3])
+static unsigned faces_at(const spotting* s, const double point[3])
 {
-  int count = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    count += point[k] <= 0 || point[k] >= s->grid->size[k];
-  }
-  return count;
+  return mlim_faces_at(s->grid->size, point);
 }
 
 /* The members' mean would be on no sheet, and off the box's faces: the member nearest to it, of those
@@ -158,7 +156,7 @@ static void choose_member(const spotting* s, double center[3])
   for (size_t m = 0; m < s->member_count; ++m)
   {
     const double* point = s->points[s->members[m]].point;
-    const int faces = count_faces(s, point);
+    const int faces = mlim_faces_count(faces_at(s, point));
     const double d = mlim_distance_squared(point, mean);
     if (faces > most || (faces == most && d < least))
     {
@@ -184,15 +182,16 @@ static double radius_at(const spotting* s, const double center[3])
 static int32_t find_ball(const spotting* s, const double center[3], double radius)
 {
   int32_t found = -1;
-  int most = count_faces(s, center);
+  int most = mlim_faces_count(faces_at(s, center));
   double least = HUGE_VAL;
   mlim_point_walk walk;
-  for (int32_t b = mlim_point_grid_first(&s->ball_grid, center, radius + s->largest_ball, &walk);
-       b >= 0; b = mlim_point_grid_next(&s->ball_grid, &walk))
+  for (int32_t b =
+         mlim_point_grid_first(&s->ball_grid.points, center, radius + s->ball_grid.largest, &walk);
+       b >= 0; b = mlim_point_grid_next(&s->ball_grid.points, &walk))
   {
     const double* at = s->balls->centers + 3 * (size_t)b;
     const double d = mlim_distance(at, center);
-    const int faces = count_faces(s, at);
+    const int faces = mlim_faces_count(faces_at(s, at));
     if (d <= fmax(radius, s->balls->radii[b] + 0.5 * radius) &&
         (faces > most || (faces == most && d < least)))
     {
@@ -207,8 +206,8 @@ static int32_t find_ball(const spotting* s, const double center[3], double radiu
 static int is_in_ball(const spotting* s, const double center[3], double radius)
 {
   mlim_point_walk walk;
-  for (int32_t b = mlim_point_grid_first(&s->ball_grid, center, s->largest_ball, &walk); b >= 0;
-       b = mlim_point_grid_next(&s->ball_grid, &walk))
+  for (int32_t b = mlim_point_grid_first(&s->ball_grid.points, center, s->ball_grid.largest, &walk);
+       b >= 0; b = mlim_point_grid_next(&s->ball_grid.points, &walk))
   {
     const double d = mlim_distance(s->balls->centers + 3 * (size_t)b, center);
     if (d >= radius && d < APART * s->balls->radii[b])
@@ -219,23 +218,12 @@ static int is_in_ball(const spotting* s, const double center[3], double radius)
   return 0;
 }
 
-static unsigned faces_at(const spotting* s, const double point[3])
-{
-  unsigned faces = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    faces |= point[k] <= 0 ? 1u << (2 * k) : 0;
-    faces |= point[k] >= s->grid->size[k] ? 2u << (2 * k) : 0;
-  }
-  return faces;
-}
-
 /* At a distance from a face: small enough for vertices on the face, which keep the smallest distance from
-   the ball in power, and OUTSIDE. */
+   the ball in power, and MLIM_NEAR_GUARD. */
 static double radius_below(const spotting* s, double distance)
 {
   const double squared = distance * distance;
-  return sqrt(fmax(0, fmin(squared - s->unit * s->unit, squared / (1 + 1.5 * OUTSIDE))));
+  return sqrt(fmax(0, fmin(squared - s->unit * s->unit, squared / (1 + 1.5 * MLIM_NEAR_GUARD))));
 }
 
 /* Caps stay flat and the box keeps its edges: the contact does not reach a face on which it is not, nor
@@ -251,9 +239,9 @@ static void keep_off_faces(const spotting* s, mlim_contact* contact)
     contact->radius = high > 0 ? fmin(contact->radius, radius_below(s, high)) : contact->radius;
   }
   mlim_point_walk walk;
-  const double reach = contact->radius + s->largest_ball;
-  for (int32_t b = mlim_point_grid_first(&s->ball_grid, contact->center, reach, &walk); b >= 0;
-       b = mlim_point_grid_next(&s->ball_grid, &walk))
+  const double reach = contact->radius + s->ball_grid.largest;
+  for (int32_t b = mlim_point_grid_first(&s->ball_grid.points, contact->center, reach, &walk);
+       b >= 0; b = mlim_point_grid_next(&s->ball_grid.points, &walk))
   {
     const double* at = s->balls->centers + 3 * (size_t)b;
     if (faces_at(s, at) & ~faces)
@@ -348,7 +336,7 @@ mlim_status mlim_spots_cover(const mlim_refinement* refinement, const mlim_balls
     .grid = mlim_field_grid_of(refinement->complex.oracle.field),
     .balls = balls,
     .unit = refinement->options->smallest_distance };
-  mlim_status status = gather_points(&s);
+  mlim_status status = gather_points(&s, context);
   if (status == MLIM_OK && s.point_count > 0)
   {
     status = create_grids(&s);
@@ -368,66 +356,4 @@ mlim_status mlim_spots_cover(const mlim_refinement* refinement, const mlim_balls
   }
   spotting_free(&s);
   return status;
-}
-
-void mlim_known_free(mlim_known* known)
-{
-  mlim_release(known->points);
-  mlim_release(known->sheets);
-  *known = (mlim_known){ 0 };
-}
-
-static int may_stay(
-  const mlim_balls* balls, const mlim_point_grid* grid, double reach, const mlim_vertex* vertex)
-{
-  mlim_point_walk walk;
-  for (int32_t b = mlim_point_grid_first(grid, vertex->point, reach, &walk); b >= 0;
-       b = mlim_point_grid_next(grid, &walk))
-  {
-    const double d = mlim_distance_squared(balls->centers + 3 * (size_t)b, vertex->point);
-    const double weight = balls->radii[b] * balls->radii[b];
-    const double factor = balls->ball_curves[b] == MLIM_CONTACT ? ANEW * ANEW : 1 + OUTSIDE;
-    if (d < factor * weight)
-    {
-      return 0;
-    }
-  }
-  return 1;
-}
-
-mlim_status mlim_spots_keep(const mlim_refinement* refinement, const mlim_balls* balls,
-  mlim_context* context, mlim_known* out)
-{
-  const mlim_complex* complex = &refinement->complex;
-  *out = (mlim_known){ .progress = refinement->progress,
-    .points = mlim_allocate(3 * complex->vertex_count, sizeof *out->points),
-    .sheets = mlim_allocate(complex->vertex_count, sizeof *out->sheets) };
-  mlim_point_grid grid = { 0 };
-  double reach = 0;
-  for (size_t b = 0; b < balls->ball_count; ++b)
-  {
-    const double factor = balls->ball_curves[b] == MLIM_CONTACT ? ANEW : 1 + OUTSIDE;
-    reach = fmax(reach, factor * balls->radii[b]);
-  }
-  if (out->points == NULL || out->sheets == NULL ||
-      mlim_point_grid_create(reach, balls->ball_count, &grid) != MLIM_OK)
-  {
-    mlim_known_free(out);
-    return mlim_fail_memory(context, "the triangulation");
-  }
-  for (size_t b = 0; b < balls->ball_count; ++b)
-  {
-    mlim_point_grid_add(&grid, balls->centers + 3 * b, (int32_t)b);
-  }
-  for (size_t v = 0; v < complex->vertex_count; ++v)
-  {
-    const mlim_vertex* vertex = &complex->vertices[v];
-    if (vertex->kind == MLIM_VERTEX_SURFACE && may_stay(balls, &grid, reach, vertex))
-    {
-      mlim_copy(vertex->point, out->points + 3 * out->count);
-      out->sheets[out->count++] = vertex->sheet;
-    }
-  }
-  mlim_point_grid_free(&grid);
-  return MLIM_OK;
 }

@@ -1,6 +1,6 @@
-/* Spots that refinement cannot resolve: films and wedges of a third label, and contacts, thinner than
-   the smallest distance of two vertices. Each is covered by a contact: one ball, at which all its
-   sheets meet. The paper has no such spots: it assumes that a ball can always be split. */
+/* Spots that refinement cannot resolve, not with partners across films either: ends of films, and regions
+   that touch, below the smallest distance of two vertices. Each is covered by a contact: one ball, at
+   which all its sheets meet. The paper has no such spots: it assumes that a ball can always be split. */
 #ifndef mlim_spots_h
 #define mlim_spots_h
 
@@ -11,12 +11,5 @@
    many; with none `out` is empty. */
 mlim_status mlim_spots_cover(const mlim_refinement* refinement, const mlim_balls* balls,
   mlim_context* context, mlim_balls* out, size_t* count);
-
-/* The surface vertices that may stay when the triangulation is made anew from these balls: outside all
-   balls and not in the neighbourhood of a contact, which is sampled anew. */
-mlim_status mlim_spots_keep(const mlim_refinement* refinement, const mlim_balls* balls,
-  mlim_context* context, mlim_known* out);
-
-void mlim_known_free(mlim_known* known);
 
 #endif

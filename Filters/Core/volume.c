@@ -2,6 +2,7 @@
 
 #include "box.h"
 #include "cells.h"
+#include "faces.h"
 #include "memory.h"
 #include "slivers.h"
 #include "status.h"
@@ -49,6 +50,7 @@ static void take_vertices(maker* m)
 {
   const mlim_complex* complex = m->input->complex;
   const mlim_mesh* mesh = m->input->mesh;
+  const double* size = mlim_field_grid_of(complex->oracle.field)->size;
   mlim_solid* solid = &m->solid;
   memcpy(solid->points, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
   solid->vertex_count = mesh->vertex_count;
@@ -59,7 +61,7 @@ static void take_vertices(maker* m)
       for (int k = 0; k < 4 && m->ids[c] >= 0; ++k)
       {
         const int32_t v = complex->cells[c].vertices[k];
-        if (is_inside || mlim_box_faces(complex, complex->vertices[v].point) != 0)
+        if (is_inside || mlim_faces_at(size, complex->vertices[v].point) != 0)
         {
           take_vertex(m, v);
         }

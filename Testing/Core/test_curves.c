@@ -186,6 +186,27 @@ static void test_lattice_planes_meet_in_one_curve_of_four_labels(void)
   mlim_curves_free(&curves);
 }
 
+/* A wall askew to the grid, in floating point: at some grid points it ties but for rounding. */
+static double rounded_wall(const double at[3], int label)
+{
+  const double x = at[0] - 6.3 - 0.12 * (at[2] - 5);
+  const double y = at[1] - 7.4 - 0.2 * (at[2] - 5);
+  const double angle = 0.1 * (label == 0 ? 1 : -1);
+  return (label == 0 ? y : -y) * cos(angle) - x * sin(fabs(angle));
+}
+
+static void test_near_tie_at_a_grid_point_leaves_no_gap(void)
+{
+  const scene_spec scene = { .dims = { 6, 16, 11 },
+    .spacing = { 1, 1, 1 },
+    .label_count = 2,
+    .background = -1,
+    .function = rounded_wall };
+  mlim_curves curves;
+  CHECK_COUNT(extract(&scene, &curves).loose_ends, 0);
+  mlim_curves_free(&curves);
+}
+
 /* Two spheres of radius 5 with centres 6 apart on x, in background 0. */
 static double two_spheres(const double at[3], int label)
 {
@@ -411,6 +432,7 @@ int main(void)
   test_four_regions_meet_in_a_point();
   test_checkerboard_has_one_junction_and_six_curves();
   test_lattice_planes_meet_in_one_curve_of_four_labels();
+  test_near_tie_at_a_grid_point_leaves_no_gap();
   test_two_spheres_meet_in_a_circle();
   test_region_that_fills_the_box_has_its_edges();
   test_background_has_nothing();

@@ -1,5 +1,6 @@
 /* Sharp angles, thin regions and regions that touch: whole runs with known answers. */
 #include "audit.h"
+#include "random_field.h"
 #include "shapes.h"
 
 static const double SPACING[3] = { 1, 1, 1 };
@@ -88,7 +89,7 @@ static void check_box(const run* r, const int32_t dims[3])
 
 static void test_wedges(void)
 {
-  const double angles[] = { 30, 8, 4 };
+  const double angles[] = { 30, 12, 8, 4, 2 };
   const int32_t dims[3] = { 22, 16, 11 };
   for (size_t k = 0; k < sizeof angles / sizeof *angles; ++k)
   {
@@ -99,8 +100,10 @@ static void test_wedges(void)
     CHECK_COUNT(r.mesh.certificate.disk_failure_count, 0);
     CHECK_COUNT(r.mesh.certificate.lost_label_count, 0);
     CHECK_COUNT(r.mesh.report.off_curve_edge_count, 0);
-    /* At 4 degrees the thin end of the wedge, 3 spacings of it, is given up to contacts. */
-    CHECK(angles[k] < 8 || fabs(r.mesh.report.min_dihedral_angle - true_angle()) < 1);
+    /* No part of the thin end, of which 7 spacings are thinner than a quarter of one at 2 degrees, is given
+       up to contacts. */
+    CHECK_BELOW(fabs(r.mesh.report.min_dihedral_angle - true_angle()), 0.1);
+    CHECK_BELOW((double)r.mesh.contact_count, angles[k] < 4 ? 9 : 3);
     check_box(&r, dims);
     CHECK_BELOW((double)r.mesh.vertex_count, 6000);
     run_free(&r);
@@ -196,11 +199,32 @@ static void test_touching_boxes(void)
   }
 }
 
+/* ---- noise ---- */
+
+/* Films and specks below every length, everywhere: what is left of them are contacts, and no regions meet
+   at any other edge off the curves. */
+static void test_noise(void)
+{
+  static random_field f;
+  for (uint64_t seed = 1; seed <= 3; ++seed)
+  {
+    random_field_make(&f, 3, 7, 0, seed);
+    run r;
+    const mlim_options options = run_options(0.7);
+    CHECK(run_grid(&f.grid, &options, NULL, &r) == MLIM_OK);
+    CHECK(r.mesh.contact_count > 0);
+    CHECK_COUNT(r.mesh.report.off_curve_edge_count, 0);
+    CHECK_COUNT(r.mesh.certificate.open_edge_count, 0);
+    run_free(&r);
+  }
+}
+
 int main(void)
 {
   test_wedges();
   test_shells();
   test_rods();
   test_touching_boxes();
+  test_noise();
   return check_result();
 }

@@ -119,9 +119,9 @@ def run_case(path, facet_size_spacings):
 
 
 def disk_failures(figures):
-    """Vertices that fail the disk condition: at most 1 in 2,000; the target is 1 in 10,000."""
+    """Vertices that fail the disk condition: at most 1 in 10,000."""
     failed, points = figures["failed_disks"], figures["points"]
-    return [f"{failed} of {points} disks fail"] if failed > points / 2000 else []
+    return [f"{failed} of {points} disks fail"] if failed > points / 10000 else []
 
 
 def vertex_count_failures(figures, facet_size_spacings):

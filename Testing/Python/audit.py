@@ -34,9 +34,9 @@ LIMITS = {
 # What is reached on noisy soft labels, where sheets of different labels come closer to each other than
 # the smallest distance of two vertices: a regression is worse than this, LIMITS are the target.
 NOISY_LIMITS = {
-    "min_normal_share": 0.998,
+    "min_normal_share": 0.9985,
     "max_ratio_exception_share": 2e-4,
-    "max_off_curve_share": 0.003,
+    "max_off_curve_share": 2e-4,
 }
 # CurveId of lines on no extracted curve: left by mending, and at contacts.
 OFF_CURVES = -1

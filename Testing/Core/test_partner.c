@@ -1,0 +1,74 @@
+/* Partners across flat films of known thickness. */
+#include "check.h"
+#include "partner.h"
+#include "shapes.h"
+#include "vector.h"
+
+/* The film is label 1, between 0 and 2, all functions linear. Its middle plane is askew to the grid. */
+static const double NORMAL[3] = { 2. / 7, 3. / 7, 6. / 7 };
+static const double SPACING[3] = { 1, 1, 1 };
+static const double SMALLEST = 0.25;
+static double thickness;
+
+static double height_of(const double at[3])
+{
+  return mlim_dot(NORMAL, at) - 4.1;
+}
+
+static double film(const double at[3], int label)
+{
+  const double height = height_of(at);
+  return label == 0 ? -height - 0.5 * thickness : label == 1 ? 0 : height - 0.5 * thickness;
+}
+
+/* Looks for the partners of a vertex on the film's lower sheet. */
+static int find(const mlim_field* field, mlim_vertex* vertex, mlim_partners* out)
+{
+  const mlim_options options = { .smallest_distance = SMALLEST };
+  const mlim_complex complex = { .oracle = {
+                                   .field = field, .tolerance = 1e-9, .mode = MLIM_ORACLE_EXACT } };
+  const double near[3] = { 2.3, 2.2, 2.6 };
+  *vertex = (mlim_vertex){ .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = { 0, 1, -1 } };
+  const double off = height_of(near) + 0.5 * thickness;
+  for (int k = 0; k < 3; ++k)
+  {
+    vertex->point[k] = near[k] - off * NORMAL[k];
+  }
+  return mlim_partners_find(&complex, &options, vertex, out);
+}
+
+static void check_film(double thick, int is_possible, size_t count)
+{
+  const int32_t dims[3] = { 6, 6, 6 };
+  thickness = thick;
+  image* im = image_sample(dims, SPACING, 3, -1, film);
+  mlim_field* field = NULL;
+  CHECK(mlim_field_create(&im->grid, NULL, &field) == MLIM_OK);
+  mlim_vertex vertex;
+  mlim_partners partners;
+  CHECK_COUNT((size_t)find(field, &vertex, &partners), (size_t)is_possible);
+  if (is_possible)
+  {
+    CHECK_COUNT(partners.count, count);
+  }
+  for (size_t k = 0; is_possible && k < partners.count; ++k)
+  {
+    /* Straight across, on the sheet between 1 and 2. */
+    CHECK(partners.vertices[k].sheet.low == 1 && partners.vertices[k].sheet.high == 2);
+    CHECK(partners.vertices[k].sheet.face == -1);
+    CHECK_BELOW(fabs(height_of(partners.vertices[k].point) - 0.5 * thick), 1e-6);
+    CHECK_BELOW(fabs(mlim_distance(partners.vertices[k].point, vertex.point) - thick), 1e-6);
+  }
+  mlim_field_free(field);
+  image_free(im);
+}
+
+int main(void)
+{
+  check_film(0.02 * SMALLEST, 0, 0); /* too thin for any vertex */
+  check_film(0.04 * SMALLEST, 1, 1);
+  check_film(SMALLEST, 1, 1);
+  check_film(1.3 * SMALLEST, 1, 1);
+  check_film(1.5 * SMALLEST, 1, 0); /* thick enough without */
+  return check_result();
+}
