@@ -13,7 +13,7 @@ static const double THINNEST = 0.03;
    they need pairs more. */
 static const double APART = 1;
 static const double APART_IF_THIN = 0.75;
-static const double THIN = 0.6;
+static const double THIN = 0.55;
 
 /* Smallest power distance of a partner to a ball, in the ball's squared radius. Lower than for other
    vertices, since its vertex keeps the distance that they do. */
