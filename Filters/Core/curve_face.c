@@ -288,9 +288,7 @@ static mlim_status start(
         from->values[corner_count * l + c] + bonus(from->labels[l]);
     }
   }
-  const mlim_corners all = {
-    .count = from->count, .labels = work->labels, .values = work->values
-  };
+  const mlim_corners all = { .count = from->count, .labels = work->labels, .values = work->values };
   *count = prune(&all, corner_count, work->labels, work->values);
   return MLIM_OK;
 }
