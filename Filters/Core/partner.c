@@ -5,7 +5,7 @@
 /* In units of the smallest distance: films up to THICKEST get pairs of vertices, thinner ones than
    THINNEST no vertex at all. Thicker: more vertices, where triangles would have been right without;
    thinner: cells so flat that nothing is won. */
-static const double THICKEST = 1.4;
+static const double THICKEST = 1.35;
 static const double THINNEST = 0.03;
 
 /* A partner keeps this distance from other vertices of its sheet, in units of the smallest distance: nearer
@@ -13,7 +13,7 @@ static const double THINNEST = 0.03;
    they need pairs more. */
 static const double APART = 1;
 static const double APART_IF_THIN = 0.75;
-static const double THIN = 0.6;
+static const double THIN = 0.55;
 
 /* Smallest power distance of a partner to a ball, in the ball's squared radius. Lower than for other
    vertices, since its vertex keeps the distance that they do. */
