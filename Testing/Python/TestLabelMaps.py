@@ -143,9 +143,9 @@ def run_case(path):
     import mlim
 
     image = mlim.read(path)
-    start = time.perf_counter()
+    start = time.process_time()
     surface = mlim.mesh(image, progress=False)
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     mesh = Surface(surface)
     expected = voxel_volumes(image)
@@ -153,7 +153,9 @@ def run_case(path):
     found += label_failures(expected, mesh)
     if memory > MAX_MEMORY_GB:
         found.append(f"{memory:.2f} GB, more than {MAX_MEMORY_GB}")
+    start = time.process_time()
     arrays = make_indicators(image)
+    indicator_seconds = time.process_time() - start
     if path.stem in COMPARED and not are_same(surface, mlim.mesh(arrays, progress=False)):
         found.append("the mesh of the map is not that of its indicators")
     figures = audit(arrays, surface, float(value(surface, "FacetDistance")), CellField)
@@ -163,7 +165,7 @@ def run_case(path):
         seconds=seconds,
         memory=memory,
         worst_volume=worst,
-        indicator_seconds=value(surface, "TimeIndicators"),
+        indicator_seconds=indicator_seconds,
         failed_disks=int(value(surface, "DiskFailureCount")),
         certificate=[int(value(surface, name)) for name in CERTIFICATE],
     )
