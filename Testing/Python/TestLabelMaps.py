@@ -7,7 +7,8 @@ the test is skipped (exit code 77). Names are files of that folder without .vti;
 M-th map, from the N-th on. Every mesh has to have all labels with their ids, the volume of each label
 of at least 1000 voxels within 3 % of its voxels, and a certificate without losses, and is audited
 against the indicators that vtkMultiLabelIndicators makes. Some are compared with the mesh of those
-indicators, which has to be the same. Figures are rows for Testing/Benchmarks/RESULTS.md.
+indicators, which has to be the same. Figures are rows for Testing/Benchmarks/RESULTS.md;
+seconds are the processor's, so that a busy machine does not count.
 """
 
 import os

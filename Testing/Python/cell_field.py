@@ -115,9 +115,6 @@ class CellField(NaiveField):
         result[inside] = self.ids[self.labels_at(*self._cell_of(indices[inside]))]
         return result
 
-    def best_two_gap(self, points):
-        raise NotImplementedError("the second best label of a cell may not be kept")
-
     def plateau_cells(self):
         result = np.zeros(len(self.count), bool)
         several = np.flatnonzero(self.count > 1)
