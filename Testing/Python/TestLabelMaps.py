@@ -147,7 +147,7 @@ def run_case(path):
     start = time.process_time()
     surface = mlim.mesh(image, progress=False)
     seconds = time.process_time() - start
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9
     mesh = Surface(surface)
     expected = voxel_volumes(image)
     found, worst = volume_failures(expected, enclosed_volumes(mesh, mesh.points.mean(axis=0)))
