@@ -205,13 +205,16 @@ def main(words):
         print("skipped: MLIM_DATA names no folder of images")
         return SKIPPED
     paths = choose(Path(folder), words)
-    if len(words) == 1 and [paths[0].stem] == words:
+    if not paths:
+        print(f"skipped: no label maps in {folder}")
+        return SKIPPED
+    if [path.stem for path in paths] == words and len(words) == 1:
         return report_case(paths[0])
     print(heading(), flush=True)
     # A process each, whose memory is the map's own.
     failed = [subprocess.call([sys.executable, __file__, path.stem]) for path in paths]
     print(f"{failed.count(0)} of {len(paths)} maps passed")
-    return 1 if any(failed) or not paths else 0
+    return 1 if any(failed) else 0
 
 
 if __name__ == "__main__":
