@@ -75,7 +75,7 @@ on_screen() {
 
 # What a build of the plugin needs beside that, with ParaView itself unpacked beside Debian's VTK:
 # python3-paraview and python3-vtk9 exclude each other as packages.
-paraview_packages=(paraview libopenmpi-dev openmpi-bin libdouble-conversion-dev libqt5svg5)
+paraview_packages=(paraview libopenmpi-dev openmpi-bin libdouble-conversion-dev libqt5svg5 qtbase5-dev xdotool)
 paraview_archives=(paraview paraview-dev python3-paraview)
 
 # unpack_paraview FOLDER : ParaView with its headers and Python below FOLDER, unless it is there.

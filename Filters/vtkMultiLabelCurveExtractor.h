@@ -20,7 +20,8 @@
  * named as the properties of vtkMultiLabelInterfaceMesher, `CurveCount`, `JunctionCount`,
  * `TimeField` and `TimeCurves` in seconds.
  *
- * After an error or an abort the output is empty, with its arrays.
+ * After an error or an abort the output is empty, with its arrays; but from VTK 9.2 on VTK itself takes
+ * the arrays away after an abort.
  *
  * @sa vtkMultiLabelCurveProtector vtkMultiLabelInterfaceMesher
  */

@@ -16,7 +16,8 @@
  * Field data: that of the input, with EdgeSize, FacetDistance and BallRadiusScale as used,
  * `BallCount` and `TimeBalls` in seconds.
  *
- * After an error or an abort the output is empty, with its arrays.
+ * After an error or an abort the output is empty, with its arrays; but from VTK 9.2 on VTK itself takes
+ * the arrays away after an abort.
  *
  * @sa vtkMultiLabelCurveExtractor vtkMultiLabelInterfaceMesher
  */

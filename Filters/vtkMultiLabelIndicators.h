@@ -36,7 +36,8 @@
  * Smoothing can make small labels disappear: a label whose indicator is nowhere the largest is named
  * in a warning. KeepThinLabels, the default, prevents it.
  *
- * After an error or an abort the output has its geometry and no arrays.
+ * After an error or an abort the output has its geometry and no arrays; but from VTK 9.2 on VTK itself
+ * empties it after an abort, so that it has no points either.
  *
  * @sa vtkMultiLabelInterfaceMesher vtkMultiLabelCurveExtractor
  */

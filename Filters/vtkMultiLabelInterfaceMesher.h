@@ -79,7 +79,8 @@
  *   background does not reach the box); `MinDihedralAngle`, `MaxDihedralAngle` in
  *   degrees, `MaxRadiusEdgeRatio` (without a ball's vertex), `MinCellVolume`.
  *
- * After an error or an abort the output is empty, with its arrays.
+ * After an error or an abort the output is empty, with its arrays; but from VTK 9.2 on VTK itself takes
+ * the arrays away after an abort.
  *
  * @sa vtkMultiLabelIndicators vtkMultiLabelCurveExtractor vtkMultiLabelCurveProtector
  * vtkSurfaceNets3D

@@ -39,21 +39,8 @@ mlim_brick_list mlim_indicators_brick(const mlim_indicators* indicators, const i
 
 const mlim_brick_entry* mlim_brick_find(const mlim_brick_list* list, int32_t label)
 {
-  size_t low = 0;
-  size_t high = list->count;
-  while (low < high)
-  {
-    const size_t middle = (low + high) / 2;
-    if (list->entries[middle].label < label)
-    {
-      low = middle + 1;
-    }
-    else
-    {
-      high = middle;
-    }
-  }
-  return low < list->count && list->entries[low].label == label ? &list->entries[low] : NULL;
+  const size_t n = mlim_label_place(list->entries, sizeof *list->entries, list->count, label);
+  return n < list->count && list->entries[n].label == label ? &list->entries[n] : NULL;
 }
 
 static void locate(const mlim_indicators* indicators, size_t point, int32_t at[3])

@@ -28,6 +28,26 @@ typedef struct mlim_brick_entry
   size_t first;        /* into the tile's values */
 } mlim_brick_entry;
 
+/* Where a label is, or would be, in an ascending array of structs that begin with their label. */
+static inline size_t mlim_label_place(const void* first, size_t stride, size_t count, int32_t label)
+{
+  size_t low = 0;
+  size_t high = count;
+  while (low < high)
+  {
+    const size_t middle = (low + high) / 2;
+    if (*(const uint16_t*)((const char*)first + middle * stride) < label)
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low;
+}
+
 /* How many voxels of a tile a label has after cleaning; those on the image's faces, edges and corners
    count a half, a quarter, an eighth. */
 typedef struct mlim_tile_voxels

@@ -239,11 +239,12 @@ static void bring_back(
 
 static void keep_lost(mlim_indicators* indicators, const mlim_label_map* map)
 {
+  const size_t bricks =
+    (size_t)indicators->bricks[0] * (size_t)indicators->bricks[1] * (size_t)indicators->bricks[2];
   for (int32_t l = 0; l < map->label_count; ++l)
   {
-    const size_t bricks =
-      (size_t)indicators->bricks[0] * (size_t)indicators->bricks[1] * (size_t)indicators->bricks[2];
-    for (size_t b = 0; b < bricks && !indicators->has[l]; ++b)
+    const int is_lost = !indicators->has[l]; /* the first of its bricks changes that */
+    for (size_t b = 0; is_lost && b < bricks; ++b)
     {
       const int32_t brick[3] = { (int32_t)(b % (size_t)indicators->bricks[0]),
         (int32_t)(b / (size_t)indicators->bricks[0] % (size_t)indicators->bricks[1]),

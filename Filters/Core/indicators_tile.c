@@ -4,6 +4,7 @@
    interfaces meet the box at right angles. */
 #include "indicators_tile.h"
 
+#include "indicators_brick.h"
 #include "memory.h"
 #include "morphology.h"
 
@@ -40,10 +41,7 @@ typedef struct tile_work
   unsigned char* mask;
   unsigned char* bytes;
   uint16_t* thin; /* a point of the tile: the label that is thin there */
-  mlim_brick_entry* entries;
-  size_t entry_count, entry_capacity;
-  size_t value_capacity;
-  mlim_tile* out;
+  mlim_brick_writer writer;
 } tile_work;
 
 /* ---- the map round the tile ---- */
@@ -75,25 +73,6 @@ static void read_map(tile_work* work)
       }
     }
   }
-}
-
-static size_t find_label(const tile_work* work, uint16_t label)
-{
-  size_t low = 0;
-  size_t high = work->label_count;
-  while (low < high)
-  {
-    const size_t middle = (low + high) / 2;
-    if (work->labels[middle].label < label)
-    {
-      low = middle + 1;
-    }
-    else
-    {
-      high = middle;
-    }
-  }
-  return low;
 }
 
 static int add_label(tile_work* work, size_t at, uint16_t label, const int32_t point[3])
@@ -129,7 +108,8 @@ static int find_labels(tile_work* work)
         }
         const int32_t first[3] = { x, y, z };
         const int32_t last[3] = { end - 1, y, z };
-        const size_t at = find_label(work, row[x]);
+        const size_t at =
+          mlim_label_place(work->labels, sizeof *work->labels, work->label_count, row[x]);
         const int is_known = at < work->label_count && work->labels[at].label == row[x];
         if (!is_known && !add_label(work, at, row[x], first))
         {
@@ -282,27 +262,6 @@ static void fill_block(tile_work* work, const block* b)
 
 /* ---- bricks ---- */
 
-static int append_entry(
-  tile_work* work, uint16_t label, size_t brick, const float* values, int is_uniform)
-{
-  const size_t count = is_uniform ? 1 : MLIM_BRICK_POINTS;
-  mlim_tile* tile = work->out;
-  if (mlim_reserve(
-        &work->entries, &work->entry_capacity, work->entry_count + 1, sizeof *work->entries) ||
-      mlim_reserve(
-        &tile->values, &work->value_capacity, tile->value_count + count, sizeof *tile->values))
-  {
-    return 0;
-  }
-  work->entries[work->entry_count++] = (mlim_brick_entry){ .label = label,
-    .brick = (uint16_t)brick,
-    .is_uniform = (uint16_t)is_uniform,
-    .first = tile->value_count };
-  memcpy(tile->values + tile->value_count, values, count * sizeof *values);
-  tile->value_count += count;
-  return 1;
-}
-
 /* A brick's points beyond the image: no value that the image does not have. */
 static void fill_beyond(
   const tile_work* work, const int32_t brick[3], float value, float values[MLIM_BRICK_POINTS])
@@ -361,7 +320,7 @@ static int cut_brick(tile_work* work, uint16_t label, const block* b, const int3
   const int is_single = is_uniform && first != floor;
   values[0] = is_single ? first : values[0];
   const size_t at = (size_t)(brick[0] | brick[1] << 2 | brick[2] << 4);
-  return append_entry(work, label, at, values, is_single);
+  return mlim_brick_add(&work->writer, label, at, values, is_single);
 }
 
 static int make_label(tile_work* work, const tile_label* label, double* voxels)
@@ -422,71 +381,15 @@ static int make_uniform(tile_work* work, double* voxels)
     const int32_t at[3] = { (int32_t)brick & 3, (int32_t)brick >> 2 & 3, (int32_t)brick >> 4 };
     if (at[0] < work->bricks[0] && at[1] < work->bricks[1] && at[2] < work->bricks[2])
     {
-      is_ok = append_entry(work, work->labels[0].label, brick, &ceiling, 1);
+      is_ok = mlim_brick_add(&work->writer, work->labels[0].label, brick, &ceiling, 1);
     }
   }
   return is_ok;
 }
 
-/* Entries come label by label; they go brick by brick, with room for no more than there is. */
-static int sort_entries(tile_work* work)
-{
-  mlim_tile* tile = work->out;
-  size_t at[MLIM_TILE_BRICKS + 1] = { 0 };
-  float* values = mlim_allocate(tile->value_count, sizeof *values);
-  tile->entries = mlim_allocate(work->entry_count, sizeof *tile->entries);
-  if (tile->entries == NULL || values == NULL)
-  {
-    mlim_release(values);
-    return 0;
-  }
-  for (size_t n = 0; n < work->entry_count; ++n)
-  {
-    ++at[work->entries[n].brick + 1];
-  }
-  for (size_t b = 0; b < MLIM_TILE_BRICKS; ++b)
-  {
-    at[b + 1] += at[b];
-  }
-  memcpy(tile->first, at, sizeof at);
-  for (size_t n = 0; n < work->entry_count; ++n)
-  {
-    tile->entries[at[work->entries[n].brick]++] = work->entries[n];
-  }
-  memcpy(values, tile->values, tile->value_count * sizeof *values);
-  mlim_release(tile->values);
-  tile->values = values;
-  return 1;
-}
-
 /* ---- thin parts ---- */
 
-/* Gives a label the lead at a point that its voxel has before smoothing, if it has less. */
-static void lead_at(mlim_tile* tile, size_t brick, size_t slot, uint16_t label, float unit)
-{
-  float best = 0;
-  float* own = NULL;
-  int has_other = 0;
-  for (size_t n = tile->first[brick]; n < tile->first[brick + 1]; ++n)
-  {
-    const mlim_brick_entry* entry = &tile->entries[n];
-    float* value = &tile->values[entry->first + (entry->is_uniform ? 0 : slot)];
-    if (entry->label == label)
-    {
-      own = entry->is_uniform ? NULL : value;
-    }
-    else if (!has_other || *value > best)
-    {
-      best = *value;
-      has_other = 1;
-    }
-  }
-  if (own != NULL && has_other && *own < best + unit)
-  {
-    *own = best + unit;
-  }
-}
-
+/* Gives thin parts the lead that their voxels have before smoothing. */
 static void lift_thin(tile_work* work, float unit)
 {
   for (int32_t z = 0; z < work->core[2]; ++z)
@@ -499,7 +402,7 @@ static void lift_thin(tile_work* work, float unit)
         const uint16_t label = work->thin[slot_in_tile(at)];
         if (label != NOBODY)
         {
-          lead_at(work->out, (size_t)(x >> 3 | (y >> 3) << 2 | (z >> 3) << 4),
+          mlim_brick_lead(work->writer.out, (size_t)(x >> 3 | (y >> 3) << 2 | (z >> 3) << 4),
             (size_t)((x & 7) | (y & 7) << 3 | (z & 7) << 6), label, unit);
         }
       }
@@ -538,7 +441,7 @@ static int open_work(tile_work* work, const mlim_indicators* indicators, const i
 
 static int make_all(tile_work* work)
 {
-  mlim_tile* tile = work->out;
+  mlim_tile* tile = work->writer.out;
   if (!find_labels(work))
   {
     return 0;
@@ -562,12 +465,12 @@ static int make_all(tile_work* work)
 int mlim_indicators_make_tile(const mlim_indicator_plan* plan, const mlim_indicators* indicators,
   const int32_t tile[3], mlim_tile* out)
 {
-  tile_work work = { .plan = plan, .out = out };
+  tile_work work = { .plan = plan, .writer = { .out = out } };
   int is_ok = open_work(&work, indicators, tile);
   if (is_ok)
   {
     read_map(&work);
-    is_ok = make_all(&work) && sort_entries(&work);
+    is_ok = make_all(&work) && mlim_brick_finish(&work.writer);
   }
   if (is_ok && plan->options.keeps_thin)
   {
@@ -580,6 +483,6 @@ int mlim_indicators_make_tile(const mlim_indicator_plan* plan, const mlim_indica
   mlim_release(work.mask);
   mlim_release(work.bytes);
   mlim_release(work.thin);
-  mlim_release(work.entries);
+  mlim_release(work.writer.entries);
   return is_ok;
 }

@@ -219,6 +219,26 @@ static void test_thin(void)
   free(scene.values);
 }
 
+/* The median takes all three away before there is a distance; they come back where they were. */
+static void test_thin_after_median(void)
+{
+  static const int32_t dims[3] = { 18, 12, 14 };
+  label_scene scene = label_scene_make(dims, CUBE, rule_thin);
+  mlim_label_map map = label_scene_read(&scene, NULL);
+  mlim_indicator_options options = mlim_indicator_options_default();
+  options.median_radius = 1;
+  mlim_indicators* kept = make(&map, &options, NULL);
+  int32_t* ids = win_ids(&map, kept, scene.count);
+  for (size_t p = 0; p < scene.count; ++p)
+  {
+    CHECK(scene.values[p] == 0 || ids[p] == scene.values[p]);
+  }
+  free(ids);
+  mlim_indicators_free(kept);
+  mlim_label_map_free(&map);
+  free(scene.values);
+}
+
 /* ---- the other filters ---- */
 
 static size_t count_id(const int32_t* ids, size_t count, int32_t id)
@@ -531,6 +551,7 @@ int main(void)
   test_values(CUBE, tiles, 1);
   test_constant();
   test_thin();
+  test_thin_after_median();
   test_morphology();
   test_volume();
   test_flat();

@@ -39,6 +39,32 @@ static void test_labels(const mlim_field* field, uint64_t seed)
   }
 }
 
+/* The best candidate at a cell's corner is the grid point's label, ties included: so cells that share
+   the point agree on it. */
+static void test_corners(const mlim_field* field)
+{
+  uint16_t labels[RANDOM_MAX_LABELS];
+  float values[8 * RANDOM_MAX_LABELS];
+  const mlim_cell_buffer buffer = { labels, values };
+  CHECK(mlim_field_max_candidates(field) <= RANDOM_MAX_LABELS);
+  for (int n = 0; n < (f.dims[0] - 1) * (f.dims[1] - 1) * (f.dims[2] - 1); ++n)
+  {
+    const int32_t cell[3] = { n % (f.dims[0] - 1), n / (f.dims[0] - 1) % (f.dims[1] - 1),
+      n / ((f.dims[0] - 1) * (f.dims[1] - 1)) };
+    const mlim_candidates in = mlim_field_cell(field, cell, &buffer);
+    for (int c = 0; c < 8; ++c)
+    {
+      const int32_t at[3] = { cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2) };
+      int32_t best = 0;
+      for (int32_t k = 1; k < in.count; ++k)
+      {
+        best = in.values[8 * k + c] > in.values[8 * best + c] ? k : best;
+      }
+      CHECK(in.labels[best] == mlim_field_point_label(field, at));
+    }
+  }
+}
+
 static int32_t label_at(const double a[3], const double b[3], double t, double* margin)
 {
   double point[3];
@@ -154,6 +180,7 @@ int main(void)
       mlim_context context = { 0 };
       CHECK(mlim_field_create(&f.grid, &context, &field) == MLIM_OK);
       test_labels(field, seed);
+      test_corners(field);
       test_clearance(field, seed);
       for (int n = 0; n < 150; ++n)
       {

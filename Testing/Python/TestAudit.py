@@ -13,6 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyDat
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 
 from audit import Surface, audit, check, distances_to_triangles, failures, near_interface
+from cell_field import CellField
 from naive_field import NaiveField, is_background
 
 # The boxes in grid points: x from 5 to 18 and from 18 to 31; y and z from 5 to 18.
@@ -366,6 +367,56 @@ class TestNaiveField(unittest.TestCase):
         field = NaiveField(make_image({"a": ones}))
         self.assertAlmostEqual(field.voxel_volumes()[1], 3 * 4 * 5 * field.voxel_volume)
         self.assertAlmostEqual(field.sampled_volumes()[1], 3 * 4 * 5 * field.voxel_volume)
+
+
+class TestCellField(unittest.TestCase):
+    """It answers as the naive field does, which asks every array."""
+
+    def expect_same(self, values, direction=None):
+        image = make_image(values, direction)
+        naive, field = NaiveField(image), CellField(image)
+        low, high = -np.ones(3), np.array(image.GetDimensions())
+        points = naive.to_world(np.random.default_rng(2).uniform(low, high, (4000, 3)))
+        # On the grid's faces and points as well, where neighbouring cells have to agree.
+        for at in (points, naive.to_world(np.round(2 * naive.to_index(points)) / 2)):
+            self.assertTrue(np.array_equal(naive.ids_at(at), field.ids_at(at)))
+        self.assertTrue(np.array_equal(naive.plateau_cells(), field.plateau_cells()))
+        for ours, theirs in zip(naive.crossings(), field.crossings()):
+            self.assertTrue(np.array_equal(ours, theirs))
+        volumes = naive.sampled_volumes()
+        self.assertEqual(
+            {k: v for k, v in volumes.items() if v > 0},
+            {k: v for k, v in field.sampled_volumes().items() if v > 0},
+        )
+        self.assertEqual(naive.voxel_volumes(), field.voxel_volumes())
+
+    def test_two_boxes(self):
+        image = two_boxes_image(MIRROR)
+        arrays = image.GetPointData()
+        values = {arrays.GetArrayName(k): NaiveField(image).values[k] for k in range(3)}
+        self.expect_same(values, MIRROR)
+
+    def test_many_labels_with_ties(self):
+        """A coarse lattice of values makes ties and plateaus; each label has a box of its own."""
+        random = np.random.default_rng(3)
+        values = {}
+        for label in range(12):
+            array = np.full((7, 8, 9), -1.0, np.float32)
+            x, y, z = random.integers(0, 5, 3)
+            array[z : z + 3, y : y + 4, x : x + 4] = random.integers(-1, 3, (3, 4, 4))[
+                : 7 - z, : 8 - y, : 9 - x
+            ]
+            values[f"label{label}"] = array
+        self.expect_same(values)
+
+    def test_labels_everywhere(self):
+        random = np.random.default_rng(4)
+        self.expect_same({f"label{k}": random.normal(size=(6, 6, 6)) for k in range(5)})
+
+    def test_different_smallest_values(self):
+        ones = np.ones((4, 5, 6))
+        ramp = np.arange(6.0) + 0 * ones
+        self.expect_same({"low": -9 * ones, "flat": 2.5 * ones, "ramp": ramp})
 
 
 if __name__ == "__main__":

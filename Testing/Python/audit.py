@@ -455,9 +455,10 @@ def volume_figures(mesh, field):
 # ---- the whole ---------------------------------------------------------------------------------
 
 
-def audit(image, surface, facet_distance):
-    """Measures the surface against the image. `facet_distance` is the bound it was made with."""
-    field = NaiveField(image)
+def audit(image, surface, facet_distance, make_field=NaiveField):
+    """Measures the surface against the image. `facet_distance` is the bound it was made with;
+    make_field(image) answers for the image."""
+    field = make_field(image)
     mesh = Surface(surface)
     if len(mesh.triangles) == 0:
         raise AssertionError("the surface has no triangle")

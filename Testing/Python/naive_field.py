@@ -135,16 +135,6 @@ class NaiveField:
             result[part] = self.ids[self.interpolate(indices[part]).argmax(axis=0)]
         return result
 
-    def best_two_gap(self, points):
-        """Largest minus second largest interpolant of world points; infinite outside the box."""
-        indices = self.to_index(points)
-        result = np.full(len(indices), np.inf)
-        inside = np.flatnonzero(self._inside(indices))
-        if len(self._flat) > 1 and len(inside) > 0:
-            ordered = np.sort(self.interpolate(indices[inside]), axis=0)
-            result[inside] = ordered[-1] - ordered[-2]
-        return result
-
     def plateau_cells(self):
         """Cells (bool, z y x) in which two labels tie for the maximum everywhere."""
         cells = np.zeros(tuple(self.dims[::-1] - 1), bool)
