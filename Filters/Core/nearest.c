@@ -11,7 +11,7 @@ static const double BINS_A_TRIANGLE = 4;
 
 static int32_t bin_of(const mlim_nearest* nearest, double value, int axis)
 {
-  const double b = floor(value / nearest->bin);
+  const double b = value / nearest->bin;
   return b < 0 ? 0 : b >= nearest->bins[axis] ? nearest->bins[axis] - 1 : (int32_t)b;
 }
 

@@ -15,6 +15,11 @@ static const double APART = 1;
 static const double APART_IF_THIN = 0.75;
 static const double THIN = 0.55;
 
+/* A pair closer than this part of the room round its vertex gives cells too flat for a volume mesh: a cell
+   between triangles of radius R, with an edge of length h across, has a radius-edge ratio of R / h at
+   least. Such films wait for denser vertices, or for contacts. */
+static const double FLATTEST = 0.13;
+
 /* Smallest power distance of a partner to a ball, in the ball's squared radius. Lower than for other
    vertices, since its vertex keeps the distance that they do. */
 static const double GUARD = 0.1;
@@ -46,6 +51,14 @@ static int find_across(
   return 1;
 }
 
+/* Whether a pair would not be too flat for the room round the vertex, which was probed last. */
+static int is_wide_enough(
+  const mlim_complex* complex, const mlim_vertex* vertex, const mlim_vertex* partner)
+{
+  const double least = FLATTEST * FLATTEST * mlim_complex_power(complex);
+  return mlim_distance_squared(partner->point, vertex->point) >= least;
+}
+
 int mlim_partners_find(const mlim_complex* complex, const mlim_options* options,
   const mlim_vertex* vertex, mlim_partners* out)
 {
@@ -63,16 +76,18 @@ int mlim_partners_find(const mlim_complex* complex, const mlim_options* options,
     const int32_t label = side == 0 ? sheet->low : sheet->high;
     double near[3];
     double far[3];
-    step(vertex->point, normal, sign * THINNEST, near);
     step(vertex->point, normal, sign * THICKEST, far);
+    if (mlim_field_label(field, far) == label)
+    {
+      continue;
+    }
+    step(vertex->point, normal, sign * THINNEST, near);
     if (mlim_field_label(field, near) != label)
     {
       return 0;
     }
-    if (mlim_field_label(field, far) != label)
-    {
-      out->count += (size_t)find_across(complex, near, far, &out->vertices[out->count]);
-    }
+    mlim_vertex* found = &out->vertices[out->count];
+    out->count += find_across(complex, near, far, found) && is_wide_enough(complex, vertex, found);
   }
   return 1;
 }

@@ -13,8 +13,8 @@ typedef struct mlim_partners
   mlim_vertex vertices[2];
 } mlim_partners;
 
-/* Looks for the partners of a surface vertex. 0: a film at the vertex is so thin that neither the vertex
-   nor a partner should be inserted. */
+/* Looks for the partners of a surface vertex, the last one that was probed. 0: a film at the vertex is so
+   thin that neither the vertex nor a partner should be inserted. */
 int mlim_partners_find(const mlim_complex* complex, const mlim_options* options,
   const mlim_vertex* vertex, mlim_partners* out);
 

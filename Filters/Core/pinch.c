@@ -12,7 +12,7 @@ enum
 {
   MAX_LABELS = 16, /* of a star; one with more is left as it is */
   MAX_PINCHES = 4096,
-  LOOKS = 4, /* at the smallest distance, its half, and so on */
+  LOOKS = 5, /* at twice the smallest distance, at it, its half, and so on */
   LOOK_EVERY = 4096
 };
 
@@ -77,7 +77,7 @@ static int is_pinched(const pinching* p, const double point[3])
 {
   const mlim_field* field = p->refinement->complex.oracle.field;
   unsigned seen = 0;
-  double distance = p->refinement->options->smallest_distance;
+  double distance = 2 * p->refinement->options->smallest_distance;
   for (int look = 0; look < LOOKS; ++look, distance *= 0.5)
   {
     for (int side = 0; side < 27; ++side)

@@ -1,5 +1,5 @@
-/* Pinches: vertices whose star no change of labels makes a disk, while all its regions come within the
-   smallest distance of the vertex. They are contacts without a spot found before. */
+/* Pinches: vertices whose star no change of labels makes a disk, while all its regions come within
+   twice the smallest distance of the vertex. They are contacts without a spot found before. */
 #ifndef mlim_pinch_h
 #define mlim_pinch_h
 

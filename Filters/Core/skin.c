@@ -4,8 +4,6 @@
 #include "status.h"
 #include "vector.h"
 
-#include <math.h>
-
 /* No more blocks than this along an axis: they are there to save time, not to be fine. */
 static const double MAX_BLOCKS = 128;
 
@@ -40,7 +38,7 @@ typedef struct block_range
 
 static int32_t block_of(const mlim_skin_blocks* blocks, double value, int axis)
 {
-  const double b = floor(value / blocks->side);
+  const double b = value / blocks->side;
   return b < 0 ? 0 : b >= blocks->counts[axis] ? blocks->counts[axis] - 1 : (int32_t)b;
 }
 

@@ -344,13 +344,19 @@ mlim_status mlim_delaunay_all(
   return Guard(context,
     [&]
     {
-      delaunay->made.clear();
-      for (CellHandle c : delaunay->triangulation.finite_cell_handles())
+      std::vector<bool> is_free(delaunay->cells.size());
+      for (int32_t id : delaunay->free)
       {
-        delaunay->made.push_back(delaunay->Describe(c));
+        is_free[static_cast<size_t>(id)] = true;
       }
-      std::sort(delaunay->made.begin(), delaunay->made.end(),
-        [](const mlim_delaunay_cell& a, const mlim_delaunay_cell& b) { return a.id < b.id; });
+      delaunay->made.clear();
+      for (size_t id = 0; id < delaunay->cells.size(); ++id)
+      {
+        if (!is_free[id])
+        {
+          delaunay->made.push_back(delaunay->Describe(delaunay->cells[id]));
+        }
+      }
       *out = { delaunay->made.size(), delaunay->made.data() };
       return MLIM_OK;
     });
