@@ -21,23 +21,36 @@ static double film(const double at[3], int label)
   return label == 0 ? -height - 0.5 * thickness : label == 1 ? 0 : height - 0.5 * thickness;
 }
 
-/* Looks for the partners of a vertex on the film's lower sheet. */
-static int find(const mlim_field* field, mlim_vertex* vertex, mlim_partners* out)
+/* Looks for the partners of a vertex on the film's lower sheet, all others of its zone being `room` away. */
+static int find(const mlim_field* field, double room, mlim_vertex* vertex, mlim_partners* out)
 {
   const mlim_options options = { .smallest_distance = SMALLEST };
-  const mlim_complex complex = { .oracle = {
-                                   .field = field, .tolerance = 1e-9, .mode = MLIM_ORACLE_EXACT } };
   const double near[3] = { 2.3, 2.2, 2.6 };
   *vertex = (mlim_vertex){ .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = { 0, 1, -1 } };
   const double off = height_of(near) + 0.5 * thickness;
+  mlim_cell cell = { .vertices = { 0, 1, 2, 3 } };
+  mlim_vertex around[4];
   for (int k = 0; k < 3; ++k)
   {
     vertex->point[k] = near[k] - off * NORMAL[k];
   }
+  for (int v = 0; v < 4; ++v)
+  {
+    around[v] = *vertex;
+    around[v].point[v % 3] += v < 3 ? room : -room;
+  }
+  const int32_t id = 0;
+  const mlim_complex complex = {
+    .oracle = { .field = field, .tolerance = 1e-9, .mode = MLIM_ORACLE_EXACT },
+    .cells = &cell,
+    .vertices = around,
+    .zone = { .count = 1, .cells = &id },
+    .pending = *vertex
+  };
   return mlim_partners_find(&complex, &options, vertex, out);
 }
 
-static void check_film(double thick, int is_possible, size_t count)
+static void check_film(double thick, double room, int is_possible, size_t count)
 {
   const int32_t dims[3] = { 6, 6, 6 };
   thickness = thick;
@@ -46,7 +59,7 @@ static void check_film(double thick, int is_possible, size_t count)
   CHECK(mlim_field_create(&im->grid, NULL, &field) == MLIM_OK);
   mlim_vertex vertex;
   mlim_partners partners;
-  CHECK_COUNT((size_t)find(field, &vertex, &partners), (size_t)is_possible);
+  CHECK_COUNT((size_t)find(field, room, &vertex, &partners), (size_t)is_possible);
   if (is_possible)
   {
     CHECK_COUNT(partners.count, count);
@@ -65,10 +78,13 @@ static void check_film(double thick, int is_possible, size_t count)
 
 int main(void)
 {
-  check_film(0.02 * SMALLEST, 0, 0); /* too thin for any vertex */
-  check_film(0.04 * SMALLEST, 1, 1);
-  check_film(SMALLEST, 1, 1);
-  check_film(1.3 * SMALLEST, 1, 1);
-  check_film(1.5 * SMALLEST, 1, 0); /* thick enough without */
+  const double unit = SMALLEST;
+  check_film(0.02 * unit, 0, 0, 0); /* too thin for any vertex */
+  check_film(0.04 * unit, 0.1 * unit, 1, 1);
+  check_film(unit, 4 * unit, 1, 1);
+  check_film(0.5 * unit, 3 * unit, 1, 1);
+  check_film(0.5 * unit, 5 * unit, 1, 0); /* a pair would be too flat for the room round it */
+  check_film(1.3 * unit, unit, 1, 1);
+  check_film(1.5 * unit, unit, 1, 0); /* thick enough without */
   return check_result();
 }
