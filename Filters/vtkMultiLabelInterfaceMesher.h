@@ -48,7 +48,7 @@
  *   `RelabeledCellCount`: small cells whose label was changed to mend the topology below the
  *   smallest distance; `RelabeledRatioCount`: triangles above the ratio bound that this brought to
  *   light; `ContactCount`: verts with the CurveId -2, at which sheets meet that touch or are nearer to
- *   each other than the smallest distance; `ContactEdgeCount`: lines with the CurveId -2, edges of
+ *   each other than twice the smallest distance; `ContactEdgeCount`: lines with the CurveId -2, edges of
  *   three or more triangles at contacts; `OffCurveEdgeCount`: lines with the CurveId -1, where three
  *   or more triangles meet off the extracted curves and contacts; `LostCurveEdgeCount`: neighbours on
  *   a curve that no edge joins.
