@@ -161,7 +161,10 @@ static int collect_link(mlim_star* star)
     return 1;
   }
   star->link_count = star->edge_count;
-  memcpy(star->link, star->edges, star->edge_count * sizeof *star->link);
+  if (star->edge_count > 0)
+  {
+    memcpy(star->link, star->edges, star->edge_count * sizeof *star->link);
+  }
   sort_ids(star->link, star->link_count);
   size_t kept = 0;
   for (size_t k = 0; k < star->link_count; ++k)

@@ -13,8 +13,7 @@ __attribute__((visibility("default"))) const char* __lsan_default_suppressions()
 // is lost as a whole is still reported: it is no block.
 const char* __lsan_default_suppressions()
 {
-  return "leak:CGAL::Compact_container*::allocate_new_block\nleak:CGAL::Compact_container*::"
-         "reserve\n";
+  return "leak:CGAL/Compact_container.h\n";
 }
 
 void* operator new(std::size_t size)
