@@ -319,12 +319,26 @@ void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* mad
 
 static void take_and_label(mlim_complex* complex, const mlim_delaunay_cells* made)
 {
-  for (size_t k = 0; k < made->count; ++k)
+  enum
   {
-    const mlim_delaunay_cell* one = &made->cells[k];
-    mlim_cell* cell = &complex->cells[one->id];
-    mlim_complex_take_cell(complex, one);
-    cell->label = mlim_field_label_near(complex->oracle.field, one->center, &cell->clearance);
+    BATCH = 64
+  };
+  mlim_field_look looks[BATCH];
+  for (size_t begin = 0; begin < made->count; begin += BATCH)
+  {
+    const size_t count = made->count - begin < BATCH ? made->count - begin : BATCH;
+    for (size_t k = 0; k < count; ++k)
+    {
+      looks[k].point = made->cells[begin + k].center;
+    }
+    mlim_field_look_at(complex->oracle.field, looks, count);
+    for (size_t k = 0; k < count; ++k)
+    {
+      mlim_complex_take_cell(complex, &made->cells[begin + k]);
+      mlim_cell* cell = &complex->cells[made->cells[begin + k].id];
+      cell->label = looks[k].label;
+      cell->clearance = looks[k].clearance;
+    }
   }
 }
 

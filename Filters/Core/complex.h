@@ -49,7 +49,7 @@ typedef struct mlim_cell
   int32_t neighbors[4];
   int32_t label;
   uint32_t mark;
-  float clearance;   /* mlim_field_label_near at the centre */
+  float clearance;   /* mlim_field_look at the centre */
   int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
 } mlim_cell;
 

@@ -242,29 +242,68 @@ int32_t mlim_field_label(const mlim_field* field, const double point[3])
                                 : (int32_t)word;
 }
 
-int32_t mlim_field_label_near(const mlim_field* field, const double point[3], float* clearance)
+/* A point's cell, while its values are on their way from memory. */
+typedef struct place
+{
+  int32_t cell[3];
+  double at[3];
+  uint32_t word;
+  int reach;
+  int is_inside;
+} place;
+
+static void find_place(const mlim_field* field, const double point[3], place* out)
+{
+  out->is_inside = find_cell(field, point, out->cell, out->at);
+  if (out->is_inside)
+  {
+    out->word = field_cell_word(field, out->cell, &out->reach);
+  }
+}
+
+static void look_at_place(const mlim_field* field, const place* place, mlim_field_look* look)
 {
   /* Rounding to float must not make the cube larger. */
   const double below_one = 1 - 1e-6;
-  int32_t cell[3];
-  double at[3];
-  if (!find_cell(field, point, cell, at))
+  if (!place->is_inside)
   {
-    *clearance = (float)(below_one * cells_outside(field, point));
-    return field->outside_label;
+    look->clearance = (float)(below_one * cells_outside(field, look->point));
+    look->label = field->outside_label;
+    return;
   }
-  int reach;
-  const uint32_t word = field_cell_word(field, cell, &reach);
-  if (word & (uint32_t)MIXED)
+  if (place->word & (uint32_t)MIXED)
   {
-    *clearance = 0;
-    return field_mixed_label(field_pool_entry(field, cell, word), word, at);
+    look->clearance = 0;
+    look->label =
+      field_mixed_label(field_pool_entry(field, place->cell, place->word), place->word, place->at);
+    return;
   }
   double least = 1;
   for (int k = 0; k < 3; ++k)
   {
-    least = mlim_min(least, mlim_min(at[k], 1 - at[k]));
+    least = mlim_min(least, mlim_min(place->at[k], 1 - place->at[k]));
   }
-  *clearance = (float)(below_one * (reach - 1 + least));
-  return (int32_t)word;
+  look->clearance = (float)(below_one * (place->reach - 1 + least));
+  look->label = (int32_t)place->word;
+}
+
+void mlim_field_look_at(const mlim_field* field, mlim_field_look* looks, size_t count)
+{
+  enum
+  {
+    BATCH = 32 /* an insertion makes about 25 cells */
+  };
+  place places[BATCH];
+  for (size_t begin = 0; begin < count; begin += BATCH)
+  {
+    const size_t end = count - begin < BATCH ? count : begin + BATCH;
+    for (size_t k = begin; k < end; ++k)
+    {
+      find_place(field, looks[k].point, &places[k - begin]);
+    }
+    for (size_t k = begin; k < end; ++k)
+    {
+      look_at_place(field, &places[k - begin], &looks[k]);
+    }
+  }
 }

@@ -48,9 +48,18 @@ mlim_candidates mlim_field_cell(
 int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3]);
 const uint16_t* mlim_field_point_labels(const mlim_field* field);
 
-/* mlim_field_label, and half the side, in cells, of a cube round the point all of which has this label;
-   0 in a mixed cell. */
-int32_t mlim_field_label_near(const mlim_field* field, const double point[3], float* clearance);
+/* What there is at a point: mlim_field_label, and half the side, in cells, of a cube round the point all of
+   which has this label; 0 in a mixed cell. */
+typedef struct mlim_field_look
+{
+  const double* point; /* in; borrowed */
+  int32_t label;
+  float clearance;
+} mlim_field_look;
+
+/* Looks at many points, which is faster than one after the other: the time goes into waiting for memory,
+   and they wait for it together. */
+void mlim_field_look_at(const mlim_field* field, mlim_field_look* looks, size_t count);
 
 /* The direction, of length 1, in which the first of two labels gains most on the second at a point. 0: there
    is none, or the point's cell does not list both. */

@@ -222,3 +222,32 @@ double mlim_nearest_distance(
   }
   return sqrt(best);
 }
+
+int mlim_nearest_is_within(const mlim_nearest* nearest, const double point[3], double bound)
+{
+  /* A triangle just beyond the bound is measured, not cut off at it. */
+  const double limit = bound * bound * (1 + 1e-9);
+  int32_t low[3];
+  int32_t high[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    low[k] = bin_of(nearest, point[k] - bound, k);
+    high[k] = bin_of(nearest, point[k] + bound, k);
+  }
+  for (int32_t z = low[2]; z <= high[2]; ++z)
+  {
+    for (int32_t y = low[1]; y <= high[1]; ++y)
+    {
+      for (int32_t x = low[0]; x <= high[0]; ++x)
+      {
+        const size_t bin =
+          (size_t)x + (size_t)nearest->bins[0] * ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
+        if (bin_distance_squared(nearest, bin, point, limit, bound * bound) <= bound * bound)
+        {
+          return 1;
+        }
+      }
+    }
+  }
+  return 0;
+}

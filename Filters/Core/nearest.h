@@ -23,4 +23,7 @@ void mlim_nearest_free(mlim_nearest* nearest);
 double mlim_nearest_distance(
   const mlim_nearest* nearest, const double point[3], double enough, double limit);
 
+/* Whether a triangle is at most `bound` away. */
+int mlim_nearest_is_within(const mlim_nearest* nearest, const double point[3], double bound);
+
 #endif

@@ -75,8 +75,7 @@ static int is_small(const far_job* job, const int32_t point[3])
 
 static int is_far(const far_job* job, const mlim_crossing* crossing)
 {
-  const double d = mlim_nearest_distance(job->nearest, crossing->point, job->bound, 2 * job->bound);
-  return d > job->bound;
+  return !mlim_nearest_is_within(job->nearest, crossing->point, job->bound);
 }
 
 static void visit_crossing(

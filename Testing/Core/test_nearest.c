@@ -117,6 +117,8 @@ static void test_points(const mlim_mesh* mesh, double side, uint64_t seed)
     const double quick = mlim_nearest_distance(&nearest, p, enough, 100);
     CHECK(quick > expected - 1e-6);
     CHECK(expected < enough ? quick < enough + 1e-6 : quick < expected + 1e-6);
+    CHECK(mlim_nearest_is_within(&nearest, p, expected + 1e-5) == (expected < 100));
+    CHECK(expected < 2e-5 || !mlim_nearest_is_within(&nearest, p, expected - 1e-5));
   }
   mlim_nearest_free(&nearest);
 }

@@ -130,22 +130,31 @@ static void test_segment(const mlim_field* field, const double a[3], const doubl
 /* Points outside the box count too: nothing but the outside may be in their cube. */
 static void test_clearance(const mlim_field* field, uint64_t seed)
 {
-  for (int n = 0; n < 300; ++n)
+  enum
   {
-    double point[3];
-    float clearance;
-    random_point(&seed, point);
-    const int32_t label = mlim_field_label_near(field, point, &clearance);
-    CHECK(clearance >= 0 && label == mlim_field_label(field, point));
+    COUNT = 300
+  };
+  double points[COUNT][3];
+  mlim_field_look looks[COUNT];
+  for (int n = 0; n < COUNT; ++n)
+  {
+    random_point(&seed, points[n]);
+    looks[n].point = points[n];
+  }
+  mlim_field_look_at(field, looks, COUNT);
+  for (int n = 0; n < COUNT; ++n)
+  {
+    const double clearance = (double)looks[n].clearance;
+    CHECK(clearance >= 0 && looks[n].label == mlim_field_label(field, points[n]));
     for (int s = 0; s < 20 && clearance > 0; ++s)
     {
       double other[3];
       double margin;
       for (int k = 0; k < 3; ++k)
       {
-        other[k] = point[k] + (double)clearance * f.spacing[k] * (2 * random_unit(&seed) - 1);
+        other[k] = points[n][k] + clearance * f.spacing[k] * (2 * random_unit(&seed) - 1);
       }
-      CHECK(random_field_label(&f, other, &margin) == label);
+      CHECK(random_field_label(&f, other, &margin) == looks[n].label);
     }
   }
 }
