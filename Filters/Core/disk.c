@@ -68,39 +68,50 @@ static int reserve(mlim_star* star)
            &star->facets, &star->facet_capacity, star->facet_count + 3, sizeof *star->facets);
 }
 
-/* Each facet of the star is seen from its two cells and taken from the one with the lower id. */
+/* For each vertex of a cell, the facets that have it, and the edges of these opposite to it. */
+static const struct
+{
+  unsigned char facet;
+  unsigned char edge[2];
+} facets_at[4][3] = { { { 1, { 2, 3 } }, { 2, { 1, 3 } }, { 3, { 1, 2 } } },
+  { { 0, { 2, 3 } }, { 2, { 0, 3 } }, { 3, { 0, 2 } } },
+  { { 0, { 1, 3 } }, { 1, { 0, 3 } }, { 3, { 0, 1 } } },
+  { { 0, { 1, 2 } }, { 1, { 0, 2 } }, { 2, { 0, 1 } } } };
+
+/* Each facet of the star is seen from its two cells and taken from the one with the lower id. What is not
+   taken is written all the same and written over by the next: branches here would be foretold wrong at
+   every other facet, and cost more than all the rest. */
 static void visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_star* star)
 {
   const mlim_cell* cell = &complex->cells[id];
-  for (int k = 0; k < 4; ++k)
+  const int32_t* v = cell->vertices;
+  const uint32_t stamp = complex->stamp;
+  const int at = (v[1] == vertex) + 2 * (v[2] == vertex) + 3 * (v[3] == vertex);
+  size_t cell_count = star->cell_count;
+  size_t edge_count = star->edge_count;
+  size_t facet_count = star->facet_count;
+  for (int f = 0; f < 3; ++f)
   {
+    const int k = facets_at[at][f].facet;
     const int32_t n = cell->neighbors[k];
-    if (cell->vertices[k] == vertex || n == MLIM_NO_CELL)
+    if (n == MLIM_NO_CELL)
     {
       continue;
     }
     mlim_cell* other = &complex->cells[n];
-    if (other->mark != complex->stamp)
-    {
-      other->mark = complex->stamp;
-      star->cells[star->cell_count++] = n;
-    }
-    if (id > n)
-    {
-      continue;
-    }
-    if (cell->facets[k] != 0)
-    {
-      star->facets[star->facet_count++] = cell->facets[k];
-    }
-    for (int j = 0; j < 4 && other->label != cell->label; ++j)
-    {
-      if (j != k && cell->vertices[j] != vertex)
-      {
-        star->edges[star->edge_count++] = cell->vertices[j];
-      }
-    }
+    star->cells[cell_count] = n;
+    cell_count += other->mark != stamp;
+    other->mark = stamp;
+    const size_t is_first = id < n;
+    star->facets[facet_count] = cell->facets[k];
+    facet_count += is_first & (cell->facets[k] != 0);
+    star->edges[edge_count] = v[facets_at[at][f].edge[0]];
+    star->edges[edge_count + 1] = v[facets_at[at][f].edge[1]];
+    edge_count += 2 * (is_first & (other->label != cell->label));
   }
+  star->cell_count = cell_count;
+  star->edge_count = edge_count;
+  star->facet_count = facet_count;
 }
 
 static int gather(mlim_complex* complex, int32_t vertex, mlim_star* star)
@@ -265,6 +276,41 @@ static int is_contact_edge(const mlim_complex* complex, int32_t a, int32_t b)
          (is_contact(complex, a) || is_contact(complex, b));
 }
 
+/* Whether the edges are one cycle that passes no vertex twice: nearly every link is, and that is seen
+   without sorting. 0 also for one with many edges. */
+static int is_ring(const int32_t* edges, size_t count)
+{
+  enum
+  {
+    MAX_EDGES = 32
+  };
+  if (count < 3 || count > MAX_EDGES)
+  {
+    return 0;
+  }
+  uint32_t is_passed = 1;
+  int32_t at = edges[1];
+  for (size_t step = 1; step < count; ++step)
+  {
+    size_t next = 0;
+    size_t choices = 0;
+    for (size_t e = 1; e < count; ++e)
+    {
+      const int goes_on = (edges[2 * e] == at) | (edges[2 * e + 1] == at);
+      const size_t is_choice = (size_t)goes_on & ~(is_passed >> e) & 1;
+      choices += is_choice;
+      next = is_choice ? e : next;
+    }
+    if (choices != 1)
+    {
+      return 0;
+    }
+    is_passed |= (uint32_t)1 << next;
+    at = edges[2 * next] == at ? edges[2 * next + 1] : edges[2 * next];
+  }
+  return at == edges[0];
+}
+
 /* A sheet's vertex has one cycle for its link. At a ball the link's branching points are exactly its
    neighbours on curves, each of them is there, and every part of the link hangs on one. At a contact
    sheets touch: its link may have any number of parts, and branch at any ball. */
@@ -318,7 +364,16 @@ mlim_status mlim_disk_check(mlim_complex* complex, const mlim_ball_links* links,
   mlim_star* star, mlim_context* context, mlim_disk* out)
 {
   *out = MLIM_DISK_EMPTY;
-  if (gather(complex, vertex, star) || collect_link(star))
+  if (gather(complex, vertex, star))
+  {
+    return mlim_fail_memory(context, "a vertex's star");
+  }
+  if (complex->vertices[vertex].ball < 0 && is_ring(star->edges, star->edge_count / 2))
+  {
+    *out = MLIM_DISK_HOLDS;
+    return MLIM_OK;
+  }
+  if (collect_link(star))
   {
     return mlim_fail_memory(context, "a vertex's star");
   }
