@@ -1,6 +1,6 @@
 #include "sides.h"
 
-#include "vector.h"
+#include "triangle.h"
 
 enum
 {
@@ -23,18 +23,14 @@ int mlim_sides_are_seen(
   const double* a = complex->vertices[v[0]].point;
   const double* b = complex->vertices[v[1]].point;
   const double* c = complex->vertices[v[2]].point;
-  double u[3];
-  double w[3];
   double normal[3];
   double middle[3];
-  mlim_subtract(b, a, u);
-  mlim_subtract(c, a, w);
-  mlim_cross(u, w, normal);
+  mlim_triangle_normal(a, b, c, normal);
   const double length = sqrt(mlim_dot(normal, normal));
   for (int k = 0; k < 3; ++k)
   {
     normal[k] /= length;
-    middle[k] = a[k] + (u[k] + w[k]) / 3;
+    middle[k] = a[k] + (b[k] - a[k] + (c[k] - a[k])) / 3;
     middle[k] = a[k] == b[k] && a[k] == c[k] ? a[k] : middle[k];
   }
   int is_inner = 0;
