@@ -16,7 +16,8 @@
  * is closed by a flat cap on the box's face. Port 1 in, optional: the balls of
  * vtkMultiLabelCurveProtector for the same image, arrays, TieBreaking and UnseenLabels. Without it
  * this filter extracts and protects the curves itself, with the same result. With it, EdgeSize,
- * BallRadiusScale and JunctionMergeTolerance are those the balls were made with.
+ * BallRadiusScale and JunctionMergeTolerance are those the balls were made with. Either way balls are made
+ * smaller where a sheet bends beside them.
  *
  * Port 0 out: vtkPolyData in world space; verts (junctions), lines (curve edges) and triangles.
  *

@@ -1,5 +1,6 @@
 /* From balls to the mesh: the order of the stages of refinement. */
 #include "balls_prune.h"
+#include "bends.h"
 #include "certificate.h"
 #include "memory.h"
 #include "mesh.h"
@@ -159,7 +160,13 @@ static mlim_status refine_topology(build* b)
     MAX_ROUNDS = 2 /* a third one finds a fifth of the first, and changes little */
   };
   mlim_known nothing = { 0 };
-  mlim_status status = refine_from_balls(b, &nothing);
+  mlim_balls trimmed;
+  mlim_status status = mlim_bends_trim(b->field, b->used_balls, b->options, b->context, &trimmed);
+  if (status == MLIM_OK)
+  {
+    take_balls(b, &trimmed);
+    status = refine_from_balls(b, &nothing);
+  }
   size_t count = 1;
   for (int round = 0; round < MAX_ROUNDS && status == MLIM_OK && count > 0; ++round)
   {

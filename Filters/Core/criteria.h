@@ -8,6 +8,9 @@
 /* For topology and distance a point keeps at least this power distance to a ball, in its squared radius:
    above 0 it is outside the ball. At 1/4 the new edge is not below half the ball's radius. */
 static const double MLIM_NEAR_GUARD = 0.25;
+/* The same for size and shape. At 1 the smallest angles near balls are about 24 degrees; at 1/16 there
+   are three times as many vertices and angles of 8 degrees. */
+static const double MLIM_QUALITY_GUARD = 1;
 
 typedef enum mlim_badness
 {

@@ -8,11 +8,24 @@ enum
 };
 
 static int32_t label_at(
-  const mlim_complex* complex, const double middle[3], const double normal[3], double offset)
+  const mlim_field* field, const double middle[3], const double normal[3], double offset)
 {
   const double at[3] = { middle[0] + offset * normal[0], middle[1] + offset * normal[1],
     middle[2] + offset * normal[2] };
-  return mlim_field_label(complex->oracle.field, at);
+  return mlim_field_label(field, at);
+}
+
+int mlim_sides_are_seen_from(const mlim_field* field, const double middle[3],
+  const double normal[3], const int32_t labels[2], double reach)
+{
+  int is_inner = 0;
+  int is_outer = 0;
+  for (int look = 0; look < LOOKS && !(is_inner && is_outer); ++look, reach *= 0.5)
+  {
+    is_inner = is_inner || label_at(field, middle, normal, -reach) == labels[0];
+    is_outer = is_outer || label_at(field, middle, normal, reach) == labels[1];
+  }
+  return is_inner && is_outer;
 }
 
 int mlim_sides_are_seen(
@@ -33,12 +46,6 @@ int mlim_sides_are_seen(
     middle[k] = a[k] + (b[k] - a[k] + (c[k] - a[k])) / 3;
     middle[k] = a[k] == b[k] && a[k] == c[k] ? a[k] : middle[k];
   }
-  int is_inner = 0;
-  int is_outer = 0;
-  for (int look = 0; look < LOOKS && !(is_inner && is_outer); ++look, reach *= 0.5)
-  {
-    is_inner = is_inner || label_at(complex, middle, normal, -reach) == inner;
-    is_outer = is_outer || label_at(complex, middle, normal, reach) == outer;
-  }
-  return is_inner && is_outer;
+  const int32_t labels[2] = { inner, outer };
+  return mlim_sides_are_seen_from(complex->oracle.field, middle, normal, labels, reach);
 }
