@@ -1,6 +1,11 @@
 #include "sides.h"
 
+#include "triangle.h"
 #include "vector.h"
+
+/* Of the distance from the crossing to the vertices. A cell on a triangle of circumradius R that reaches a
+   height h has a radius-edge ratio up to 2 only if h is 0.26 R or more; cells in films leave gaps. */
+static const double LEAST_DEPTH = 0.5;
 
 enum
 {
@@ -45,4 +50,27 @@ int mlim_sides_are_seen(
     is_outer = is_outer || label_at(complex, middle, normal, reach) == outer;
   }
   return is_inner && is_outer;
+}
+
+int mlim_sides_are_wide(const mlim_complex* complex, const mlim_facet* facet)
+{
+  int32_t v[3];
+  mlim_complex_facet_vertices(complex, facet->cell, facet->index, v);
+  const double* p[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    p[k] = complex->vertices[v[k]].point;
+    if (facet->sheet.face >= 0 || complex->vertices[v[k]].weight > 0)
+    {
+      return 1;
+    }
+  }
+  double normal[3]; /* out of the facet's cell */
+  mlim_triangle_normal(p[0], p[1], p[2], normal);
+  const mlim_cell* cell = &complex->cells[facet->cell];
+  const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
+  const double depth = LEAST_DEPTH * mlim_distance(p[0], facet->crossing) /
+                       sqrt(mlim_dot(normal, normal)); /* in lengths of the normal */
+  return label_at(complex, facet->crossing, normal, -depth) == cell->label &&
+         label_at(complex, facet->crossing, normal, depth) == other;
 }
