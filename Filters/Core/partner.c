@@ -1,6 +1,7 @@
 #include "partner.h"
 
 #include "vector.h"
+#include "wedge.h"
 
 /* In units of the smallest distance: films up to THICKEST get pairs of vertices, thinner ones than
    THINNEST no vertex at all. Thicker: more vertices, where triangles would have been right without;
@@ -17,8 +18,10 @@ static const double THIN = 0.55;
 
 /* A pair closer than this part of the room round its vertex gives cells too flat for a volume mesh: a cell
    between triangles of radius R, with an edge of length h across, has a radius-edge ratio of R / h at
-   least. Such films wait for denser vertices, or for contacts. */
-static const double FLATTEST = 0.13;
+   least. Such films wait for denser vertices, or for contacts. Sharp wedges may be flatter: they are so
+   at every density, and without pairs lose their angle. */
+static const double FLATTEST_FILM = 0.2;
+static const double FLATTEST_WEDGE = 0.13;
 
 /* Smallest power distance of a partner to a ball, in the ball's squared radius. Lower than for other
    vertices, since its vertex keeps the distance that they do. */
@@ -55,8 +58,11 @@ static int find_across(
 static int is_wide_enough(
   const mlim_complex* complex, const mlim_vertex* vertex, const mlim_vertex* partner)
 {
-  const double least = FLATTEST * FLATTEST * mlim_complex_power(complex);
-  return mlim_distance_squared(partner->point, vertex->point) >= least;
+  const double room = mlim_complex_power(complex);
+  const double width = mlim_distance_squared(partner->point, vertex->point);
+  return width >= FLATTEST_FILM * FLATTEST_FILM * room ||
+         (width >= FLATTEST_WEDGE * FLATTEST_WEDGE * room &&
+           mlim_wedge_is_at(&complex->oracle, vertex, partner));
 }
 
 int mlim_partners_find(const mlim_complex* complex, const mlim_options* options,

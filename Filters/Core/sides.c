@@ -2,6 +2,10 @@
 
 #include "triangle.h"
 
+/* Of the distance from the crossing to the vertices. A cell on a triangle of circumradius R that reaches a
+   height h has a radius-edge ratio up to 2 only if h is 0.26 R or more; cells in films leave gaps. */
+static const double LEAST_DEPTH = 0.5;
+
 enum
 {
   LOOKS = 4 /* at the reach, its half, and so on */
@@ -48,4 +52,27 @@ int mlim_sides_are_seen(
   }
   const int32_t labels[2] = { inner, outer };
   return mlim_sides_are_seen_from(complex->oracle.field, middle, normal, labels, reach);
+}
+
+int mlim_sides_are_wide(const mlim_complex* complex, const mlim_facet* facet)
+{
+  int32_t v[3];
+  mlim_complex_facet_vertices(complex, facet->cell, facet->index, v);
+  const double* p[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    p[k] = complex->vertices[v[k]].point;
+    if (facet->sheet.face >= 0 || complex->vertices[v[k]].weight > 0)
+    {
+      return 1;
+    }
+  }
+  double normal[3]; /* out of the facet's cell */
+  mlim_triangle_normal(p[0], p[1], p[2], normal);
+  const mlim_cell* cell = &complex->cells[facet->cell];
+  const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
+  const double depth = LEAST_DEPTH * mlim_distance(p[0], facet->crossing) /
+                       sqrt(mlim_dot(normal, normal)); /* in lengths of the normal */
+  return label_at(complex->oracle.field, facet->crossing, normal, -depth) == cell->label &&
+         label_at(complex->oracle.field, facet->crossing, normal, depth) == other;
 }

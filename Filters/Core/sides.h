@@ -13,4 +13,9 @@ int mlim_sides_are_seen_from(const mlim_field* field, const double middle[3],
 int mlim_sides_are_seen(
   const mlim_complex* complex, int32_t cell, int index, int32_t inner, int32_t outer, double reach);
 
+/* Whether both regions beside a facet without a ball's vertex are as thick, where its dual crosses, as half
+   the distance from there to its vertices. Cells between larger triangles and the other sheet of a film
+   are flat, whatever their vertices. Facets with a ball's vertex, and in the box's faces, count as wide. */
+int mlim_sides_are_wide(const mlim_complex* complex, const mlim_facet* facet);
+
 #endif

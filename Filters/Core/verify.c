@@ -260,10 +260,10 @@ static mlim_status look_for_far(mlim_verification* v, mlim_context* context, siz
   return status;
 }
 
-/* ---- facets off their interface ---- */
+/* ---- facets off their interface, or too large for their film ---- */
 
 /* The height of the crossing says nothing about the rest of the facet: a bump of the interface may
-   leave it between two places of one label. */
+   leave it between two places of one label. Nor does it say how far the other sheet of a film is. */
 static mlim_status look_for_sides(const mlim_verification* v, mlim_context* context, size_t* count)
 {
   mlim_refinement* r = v->refinement;
@@ -278,8 +278,9 @@ static mlim_status look_for_sides(const mlim_verification* v, mlim_context* cont
       const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
       int is_taken = 0;
       facet->is_settled = cell->label == other ||
-                          mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label,
-                            other, mlim_criteria_distance(complex, r->options, &facet->sheet));
+                          (mlim_sides_are_wide(complex, facet) &&
+                            mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label,
+                              other, mlim_criteria_distance(complex, r->options, &facet->sheet)));
       if (!facet->is_settled)
       {
         status = mlim_refine_ask(r, (int32_t)f, context, &is_taken);

@@ -24,10 +24,10 @@ CASES = (
 )
 # Where the surface is sharp or comes near itself it decides over the cells: shares of the cells that
 # may be beyond the bounds for that reason. Elsewhere none may.
-LIMITS = {"max_ratio": float("inf"), "min_angle": 0.5}
+LIMITS = {"max_ratio": float("inf"), "min_angle": 3.0}
 MAX_SHARES = {
     "below_10": 5e-4,
-    "ratio_exceptions": 2e-4,
+    "ratio_exceptions": 3e-5,
     "ratio_exceptions_away": 1e-5,
     "ball_ratio_exceptions": 0.06,
 }
