@@ -249,6 +249,7 @@ void vtkMultiLabelInterfaceMesher::Mesh(
   options.facet_size = this->FacetSize;
   options.facet_radius_edge_ratio = this->FacetRadiusEdgeRatio;
   options.facet_distance = this->FacetDistance;
+  options.smallest_distance = 0; /* follows from the size */
   options.volume_tolerance = this->VolumeTolerance;
   options.edge_size = this->EdgeSize;
   options.ball_radius_scale = this->BallRadiusScale;

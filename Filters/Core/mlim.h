@@ -266,7 +266,7 @@ typedef struct mlim_options
 mlim_options mlim_options_default(const mlim_field* field);
 /* Fills in each length that is 0 (junction_merge_tolerance: below 0): facet_size = 2 spacings,
    facet_distance = facet_size / 8, edge_size = facet_size, crossing_tolerance = 1e-6,
-   junction_merge_tolerance = 0.25 spacings, smallest_distance = facet_size / 8 but at most 0.5
+   junction_merge_tolerance = 0.25 spacings, smallest_distance = facet_size / 8 but at most 0.25
    spacings, cell_size = 2 facet_size. Then checks every option. */
 mlim_status mlim_options_complete(
   const mlim_field* field, mlim_context* context, mlim_options* options);

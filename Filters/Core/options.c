@@ -13,7 +13,7 @@ static const double CELL_SIZE = 2; /* of facet_size */
 static const double CELL_RADIUS_EDGE_RATIO = 2;
 static const double SMALLEST_PART =
   0.125; /* of facet_size: a finer spot costs a fan of triangles */
-static const double LARGEST_SMALLEST = 0.5; /* what the voxels separate is not given up */
+static const double LARGEST_SMALLEST = 0.25; /* what the voxels separate is not given up */
 
 mlim_options mlim_options_default(const mlim_field* field)
 {

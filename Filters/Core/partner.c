@@ -20,7 +20,7 @@ static const double THIN = 0.55;
    between triangles of radius R, with an edge of length h across, has a radius-edge ratio of R / h at
    least. Such films wait for denser vertices, or for contacts. Sharp wedges may be flatter: they are so
    at every density, and without pairs lose their angle. */
-static const double FLATTEST_FILM = 0.2;
+static const double FLATTEST_FILM = 0.25;
 static const double FLATTEST_WEDGE = 0.13;
 
 /* Smallest power distance of a partner to a ball, in the ball's squared radius. Lower than for other

@@ -15,6 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
 
 import mlim
+from audit import audit, check
 
 SIZE = 24
 # Centres and radii, in voxels, of balls that meet in curves and junctions; the last one leaves the
@@ -131,6 +132,24 @@ class TestPipeline(unittest.TestCase):
         # The mesher takes both from the balls, whatever its own options say.
         staged = mlim.mesh(image, balls=protector.GetOutput(), edge_size=0.5)
         self.assertEqual(digest(direct), digest(staged))
+
+    def test_sizes(self):
+        """What FacetSize alone sets: half of it gives a mesh of about four times as many vertices, whose
+        triangles keep all bounds; the smallest distance does not stand in the way."""
+        image = make_image(False)
+        counts = []
+        for size in (1.0, 0.5):
+            surface = mlim.mesh(image, facet_size=size)
+            figures = surface.GetFieldData()
+            value = lambda name: figures.GetArray(name).GetComponent(0, 0)
+            self.assertAlmostEqual(value("SmallestDistance"), size / 8)
+            self.assertAlmostEqual(value("FacetDistance"), size / 8)
+            for name in ("UnresolvedSizeCount", "UnresolvedRatioCount", "LostLabelCount"):
+                self.assertEqual(value(name), 0, name)
+            check(audit(image, surface, size / 8))
+            counts.append(surface.GetNumberOfPoints())
+        self.assertGreater(counts[1], 3 * counts[0])
+        self.assertLess(counts[1], 5 * counts[0])
 
     def test_balls_disconnect(self):
         image = make_image()
