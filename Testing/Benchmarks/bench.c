@@ -5,6 +5,7 @@
    Without names all cases. Real images are looked for in the folder, else in the one that the
    environment variable MLIM_DATA names; without a folder they are left out. */
 #include "record.h"
+#include "report.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -100,7 +101,9 @@ static int measure_all(const arguments* given, bench_result* results, size_t cou
       if (is_wanted(results[r].one, given) && !results[r].best.has_failed)
       {
         bench_figures figures;
-        bench_measure(results[r].one, given->folder, &figures);
+        const bench_demand demand = { .one = results[r].one,
+          .facet_size = results[r].one->facet_size };
+        bench_measure(&demand, given->folder, &figures);
         bench_result_add(&results[r], &figures);
         fprintf(stderr, "run %d of %d: %s, %zu vertices, %.2f s%s%s\n", round + 1, given->run_count,
           results[r].one->name, figures.vertex_count, figures.total_wall,
@@ -138,7 +141,7 @@ static int publish(const arguments* given, const bench_result* results, size_t c
   bench_record_write(results, count, command, memory);
   fclose(memory);
   fputs(text, stdout);
-  const int has_failed = given->file != NULL && bench_record_replace(given->file, text);
+  const int has_failed = given->file != NULL && bench_report_replace(given->file, "figures", text);
   free(text);
   return has_failed;
 }
