@@ -37,7 +37,7 @@ enum
   RUNS = 2
 };
 
-static const double QUICK_BYTES = 1e9;
+static const double LARGE_BYTES = 1e9; /* measured once, and not at all by --quick */
 static const double MEGABYTE = 1024.0 * 1024.0;
 
 typedef struct figures
@@ -235,10 +235,16 @@ done:
   free_arrays(&made);
 }
 
-/* The least of some runs. */
+static double bytes_of(const row* one)
+{
+  return pow(one->point_count, 3) * one->label_count * sizeof(uint16_t);
+}
+
+/* The least of some runs; large ones are measured once. */
 static void measure(const row* one, figures* best)
 {
-  for (int r = 0; r < RUNS; ++r)
+  const int run_count = bytes_of(one) < LARGE_BYTES ? RUNS : 1;
+  for (int r = 0; r < run_count; ++r)
   {
     figures now;
     if (bench_process_run(work, one, 0, sizeof now, &now, now.message))
@@ -261,11 +267,6 @@ static void measure(const row* one, figures* best)
 }
 
 /* ---- the table ---- */
-
-static double bytes_of(const row* one)
-{
-  return pow(one->point_count, 3) * one->label_count * sizeof(uint16_t);
-}
 
 static void add_row(const row* one, const figures* f, bench_table* table)
 {
@@ -346,7 +347,7 @@ int main(int argc, char** argv)
   }
   for (int r = 0; r < ROW_COUNT; ++r)
   {
-    if (!is_quick || bytes_of(&rows[r]) < QUICK_BYTES)
+    if (!is_quick || bytes_of(&rows[r]) < LARGE_BYTES)
     {
       figures best;
       measure(&rows[r], &best);
