@@ -1,9 +1,10 @@
 /* Time and memory of each stage, on scenes that are made here and on real images.
 
-     bench [--data FOLDER] [--runs N] [--write FILE] [NAME ...]
+     bench [--quick] [--data FOLDER] [--runs N] [--write FILE] [NAME ...]
 
-   Without names all cases. Real images are looked for in the folder, else in the one that the
-   environment variable MLIM_DATA names; without a folder they are left out. */
+   --quick: one run unless said otherwise. Without names all cases. Real images are looked for in the
+   folder, else in the one that the environment variable MLIM_DATA names; without a folder they are
+   left out. */
 #include "record.h"
 #include "report.h"
 
@@ -31,6 +32,11 @@ static int parse(int argc, char** argv, arguments* out)
   const char* folder = getenv("MLIM_DATA");
   *out = (arguments){ .run_count = DEFAULT_RUNS, .folder = folder };
   int i = 1;
+  if (i < argc && strcmp(argv[i], "--quick") == 0)
+  {
+    out->run_count = 1;
+    ++i;
+  }
   for (; i + 1 < argc && strncmp(argv[i], "--", 2) == 0; i += 2)
   {
     if (strcmp(argv[i], "--data") == 0)
@@ -151,7 +157,8 @@ int main(int argc, char** argv)
   arguments given;
   if (parse(argc, argv, &given))
   {
-    fprintf(stderr, "usage: %s [--data FOLDER] [--runs N] [--write FILE] [NAME ...]\n", argv[0]);
+    fprintf(stderr, "usage: %s [--quick] [--data FOLDER] [--runs N] [--write FILE] [NAME ...]\n",
+      argv[0]);
     return 2;
   }
   size_t count;

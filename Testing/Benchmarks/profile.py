@@ -2,8 +2,8 @@
 
     profile.py BENCH --data FOLDER [--case NAME] [--write RESULTS.md]
 
-The table goes between the marks "profile" of the file. Of a function without its callers' name in the
-table, its compiler has put it into one that is there.
+The table goes between the marks "profile" of the file. What the compiler put into its caller counts as
+the caller.
 """
 
 import argparse
