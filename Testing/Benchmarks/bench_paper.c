@@ -23,14 +23,14 @@ typedef struct row
 } row;
 
 static const row rows[] = {
-  { "Spheres", 36, 4492, 16, 50, "spheres8_indicators", 1.8 },
-  { "Orange", 24, 24543, 14, 8 * 60 + 46, "fruit_orange_synthetic_labels", 3.4 },
+  { "Spheres", 36, 4492, 16, 50, "spheres8_indicators", 1.65 },
+  { "Orange", 24, 24543, 14, 8 * 60 + 46, "fruit_orange_synthetic_labels", 3.5 },
   { "Temporal Bone", 16, 24898, 11, 8 * 60 + 32, NULL, 0 },
   { "Tomato", 35, 25701, 61, 9 * 60 + 7, NULL, 0 },
-  { "Brain Atlas", 64, 35890, 64, 17 * 60 + 50, "brain_atlas_mni_prob", 7.5 },
-  { "Torso", 57, 39826, 97, 19 * 60 + 27, "torso_ct_indicators", 2.3 },
+  { "Brain Atlas", 64, 35890, 64, 17 * 60 + 50, "brain_atlas_mni_prob", 6.2 },
+  { "Torso", 57, 39826, 97, 19 * 60 + 27, "torso_ct_indicators", 2.5 },
   { "Bulldog Skull", 17, 51474, 10, 32 * 60 + 48, "skull_iguana_ct_labels", 0 },
-  { "Soft Brain", 100, 211664, 117, 244 * 60 + 1, "soft_brain_ants19_prob", 2.3 },
+  { "Soft Brain", 100, 211664, 117, 244 * 60 + 1, "soft_brain_ants19_prob", 2.15 },
 };
 
 enum

@@ -92,8 +92,11 @@ mlim_status bench_options(const mlim_grid* grid, const mlim_field* field,
   if (demand->facet_size > 0)
   {
     out->facet_size = demand->facet_size * smallest_spacing(grid);
+    /* These follow from it anew. */
     out->facet_distance = 0;
     out->edge_size = 0;
+    out->smallest_distance = 0;
+    out->cell_size = 0;
   }
   if (demand->has_bounds_only)
   {

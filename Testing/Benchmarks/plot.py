@@ -58,7 +58,9 @@ def draw_scene(axes, scene, rows):
     for column, name, color, marker in LINES:
         pairs = [(read_number(row["vertices"]), read_number(row[column])) for row in rows]
         pairs = [(x, y) for x, y in pairs if x and y]
-        axes.loglog(*zip(*pairs), color=color, marker=marker, markersize=4, linewidth=1.3, label=name)
+        x = [pair[0] for pair in pairs]
+        y = [pair[1] for pair in pairs]
+        axes.loglog(x, y, color=color, marker=marker, markersize=4, linewidth=1.3, label=name)
     axes.set_title(TITLES.get(scene, scene), fontsize=10)
     axes.set_xlabel("vertices", fontsize=9)
     axes.set_ylabel("seconds of the processor", fontsize=9)
@@ -74,13 +76,16 @@ def main():
         text = file.read().split(MARKS[0], 1)[1].split(MARKS[1], 1)[0]
     rows = read_table(text, "Seconds for the same number of vertices:")
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
-    figure, grid = pyplot.subplots(2, 3, figsize=(11, 6.6))
+    # One place is the legend's.
+    across = min(len(scenes) + 1, 3)
+    down = len(scenes) // across + 1
+    figure, grid = pyplot.subplots(down, across, figsize=(3.7 * across, 3.3 * down), squeeze=False)
     for axes in grid.flat[len(scenes):]:
         axes.axis("off")
     for axes, scene in zip(grid.flat, scenes):
         draw_scene(axes, scene, [row for row in rows if row["scene"] == scene])
     handles, names = grid.flat[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="lower right", bbox_to_anchor=(0.97, 0.16), fontsize=9)
+    grid.flat[-1].legend(handles, names, loc="center", fontsize=9)
     figure.tight_layout()
     figure.savefig(target, dpi=110, metadata={"Software": None})
 
