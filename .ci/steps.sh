@@ -6,6 +6,8 @@
 # its tests.
 compile_packages=(cmake ninja-build g++ dpkg-dev libcgal-dev python3-numpy)
 build_packages=("${compile_packages[@]}" libvtk9-dev python3-vtk9 libeigen3-dev python3-meshio)
+# What the benchmarks compare with, and what draws and profiles them.
+benchmark_packages=(libtbb-dev linux-perf python3-matplotlib)
 # Debian's VTK draws through X: a virtual screen serves where there is no display.
 screen_packages=(xvfb xauth libgl1-mesa-dri)
 # The interpreter that Debian's VTK is wrapped for; another python3 may come first on the PATH.

@@ -1,10 +1,12 @@
 /* Time and memory of each stage, on scenes that are made here and on real images.
 
-     bench [--data FOLDER] [--runs N] [--write FILE] [NAME ...]
+     bench [--quick] [--data FOLDER] [--runs N] [--write FILE] [NAME ...]
 
-   Without names all cases. Real images are looked for in the folder, else in the one that the
-   environment variable MLIM_DATA names; without a folder they are left out. */
+   --quick: one run unless said otherwise. Without names all cases. Real images are looked for in the
+   folder, else in the one that the environment variable MLIM_DATA names; without a folder they are
+   left out. */
 #include "record.h"
+#include "report.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +32,11 @@ static int parse(int argc, char** argv, arguments* out)
   const char* folder = getenv("MLIM_DATA");
   *out = (arguments){ .run_count = DEFAULT_RUNS, .folder = folder };
   int i = 1;
+  if (i < argc && strcmp(argv[i], "--quick") == 0)
+  {
+    out->run_count = 1;
+    ++i;
+  }
   for (; i + 1 < argc && strncmp(argv[i], "--", 2) == 0; i += 2)
   {
     if (strcmp(argv[i], "--data") == 0)
@@ -100,7 +107,9 @@ static int measure_all(const arguments* given, bench_result* results, size_t cou
       if (is_wanted(results[r].one, given) && !results[r].best.has_failed)
       {
         bench_figures figures;
-        bench_measure(results[r].one, given->folder, &figures);
+        const bench_demand demand = { .one = results[r].one,
+          .facet_size = results[r].one->facet_size };
+        bench_measure(&demand, given->folder, &figures);
         bench_result_add(&results[r], &figures);
         fprintf(stderr, "run %d of %d: %s, %zu vertices, %.2f s%s%s\n", round + 1, given->run_count,
           results[r].one->name, figures.vertex_count, figures.total_wall,
@@ -138,7 +147,7 @@ static int publish(const arguments* given, const bench_result* results, size_t c
   bench_record_write(results, count, command, memory);
   fclose(memory);
   fputs(text, stdout);
-  const int has_failed = given->file != NULL && bench_record_replace(given->file, text);
+  const int has_failed = given->file != NULL && bench_report_replace(given->file, "figures", text);
   free(text);
   return has_failed;
 }
@@ -148,7 +157,8 @@ int main(int argc, char** argv)
   arguments given;
   if (parse(argc, argv, &given))
   {
-    fprintf(stderr, "usage: %s [--data FOLDER] [--runs N] [--write FILE] [NAME ...]\n", argv[0]);
+    fprintf(stderr, "usage: %s [--quick] [--data FOLDER] [--runs N] [--write FILE] [NAME ...]\n",
+      argv[0]);
     return 2;
   }
   size_t count;

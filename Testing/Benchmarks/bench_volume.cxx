@@ -3,13 +3,10 @@
 //   bench_volume [--data FOLDER] [--write FILE] [--quick]
 //
 // --write puts the tables between the marks of the file; --quick leaves out what takes minutes.
-#include "mesh3.h"
-
-extern "C" {
 #include "cases.h"
 #include "clock.h"
-#include "field.h"
-}
+#include "mesh3_domain.h"
+#include "report.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -24,9 +21,7 @@ extern "C" {
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -161,36 +156,23 @@ Figures RunOurs(const mlim_field* field, const mlim_options& options)
 Figures RunMesh3(const mlim_field* field, const mlim_options& options)
 {
   // A radius-edge ratio of 1 is an angle of 30 degrees.
-  const bench_mesh3_criteria criteria = { 30.0, options.facet_size, options.facet_distance,
-    options.cell_size, options.cell_radius_edge_ratio };
+  const bench_mesh3_criteria criteria = { 30.0, options.facet_size, options.facet_distance, 0.0,
+    0.0, options.cell_size, options.cell_radius_edge_ratio };
+  const bench_mesh3_mesh cells =
+    bench_mesh3(bench_mesh3_domain_of(field, nullptr, options.min_component_voxels), criteria);
   Figures out;
-  const bench_cells cells =
-    bench_mesh3(field, mlim_field_grid_of(field)->size, criteria, &out.Seconds);
+  out.Seconds = cells.UserSeconds;
   out.Cells = cells.Cells.size() / 4;
   out.Shapes =
     MeasureCells(cells.Points.data(), cells.Points.size() / 3, cells.Cells.data(), out.Cells);
   return out;
 }
 
-const bench_case* FindCase(const Scene& scene)
-{
-  size_t count;
-  const bench_case* cases = bench_cases(&count);
-  for (size_t c = 0; c < count; ++c)
-  {
-    if (std::strcmp(cases[c].name, scene.Name) == 0)
-    {
-      return cases + c;
-    }
-  }
-  throw std::runtime_error(std::string("There is no case ") + scene.Name);
-}
-
 void Run(const Scene& scene, const Arguments& given, Figures* ours, Figures* theirs)
 {
   char message[BENCH_MESSAGE_SIZE];
   bench_image image;
-  if (bench_case_load(FindCase(scene), given.Folder.c_str(), message, &image))
+  if (bench_case_load(bench_case_find(scene.Name), given.Folder.c_str(), message, &image))
   {
     throw std::runtime_error(message);
   }
@@ -295,27 +277,6 @@ std::string Tables(const Arguments& given)
          shapes + "\n";
 }
 
-void Replace(const std::string& path, const std::string& text)
-{
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream old;
-  old << in.rdbuf();
-  std::string content = old.str();
-  const size_t begin = content.find(begin_mark);
-  const size_t end = content.find(end_mark);
-  if (begin == std::string::npos || end == std::string::npos)
-  {
-    throw std::runtime_error(path + " lacks the marks of the volumes.");
-  }
-  content.replace(begin, end - begin, begin_mark + text);
-  std::ofstream out(path, std::ios::binary);
-  out << content;
-  if (!out.flush())
-  {
-    throw std::runtime_error(path + " cannot be written.");
-  }
-}
-
 Arguments Parse(int argc, char** argv)
 {
   Arguments given;
@@ -352,11 +313,7 @@ int main(int argc, char** argv)
     const Arguments given = Parse(argc, argv);
     const std::string text = Tables(given);
     std::cout << text;
-    if (!given.File.empty())
-    {
-      Replace(given.File, text);
-    }
-    return 0;
+    return !given.File.empty() && bench_report_replace(given.File.c_str(), "volumes", text.c_str());
   }
   catch (const std::exception& error)
   {

@@ -1,8 +1,6 @@
 #include "bulk.h"
 
-extern "C" {
 #include "clock.h"
-}
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Hidden_point_memory_policy.h>

@@ -4,6 +4,10 @@
 
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Seconds of CPU time spent outside the system. */
 double bench_clock_user(void);
 
@@ -17,5 +21,9 @@ size_t bench_memory_peak(void);
 /* Gives free memory back to the system, and lets the peak begin anew from what is in use. Where
    the system does not offer that, the peak stays that of the whole process. */
 void bench_memory_reset(void);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,7 +1,9 @@
 #include "image.h"
 
 #include "vtkMultiLabelInput.h"
+#include "vtkMultiLabelRun.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
@@ -50,6 +52,12 @@ int bench_image_read(const char* path, char message[BENCH_MESSAGE_SIZE], bench_i
     auto owner = std::make_unique<Owner>();
     owner->Image = ReadImage(path);
     owner->Input = std::make_unique<vtkMultiLabel::Input>(owner->Image, vtkMultiLabel::Choice());
+    if (owner->Input->IsLabelMap())
+    {
+      vtkNew<vtkAlgorithm> nobody;
+      vtkMultiLabel::Run run(nobody, { MLIM_STAGE_INDICATORS });
+      owner->Input->MakeIndicators(run);
+    }
     out->grid = owner->Input->Grid;
     out->release = &Release;
     out->owner = owner.release();

@@ -20,7 +20,7 @@ typedef struct bench_image
   void (*release)(void* owner); /* NULL: nothing to release */
 } bench_image;
 
-/* Reads a .vti file; arrays, labels and background are chosen as the filters choose them. Not 0:
+/* Reads a .vti file, and makes the indicators of a label map; arrays, labels and background are chosen as the filters choose them. Not 0:
    `message` says in one sentence what is wrong, and `out` is empty. */
 int bench_image_read(const char* path, char message[BENCH_MESSAGE_SIZE], bench_image* out);
 

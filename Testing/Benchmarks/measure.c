@@ -2,14 +2,13 @@
 
 #include "bulk.h"
 #include "clock.h"
+#include "process.h"
+#include "threads.h"
 
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 /* ---- stages ---- */
 
@@ -86,30 +85,39 @@ static double smallest_spacing(const mlim_grid* grid)
   return fmin(grid->spacing[0], fmin(grid->spacing[1], grid->spacing[2]));
 }
 
-static mlim_status complete_options(
-  const mlim_grid* grid, double facet_size, mlim_context* context, products* p)
+mlim_status bench_options(const mlim_grid* grid, const mlim_field* field,
+  const bench_demand* demand, mlim_context* context, mlim_options* out)
 {
-  p->options = mlim_options_default(p->field);
-  if (facet_size > 0)
+  *out = mlim_options_default(field);
+  if (demand->facet_size > 0)
   {
-    p->options.facet_size = facet_size * smallest_spacing(grid);
-    p->options.facet_distance = 0;
-    p->options.edge_size = 0;
+    out->facet_size = demand->facet_size * smallest_spacing(grid);
+    /* These follow from it anew. */
+    out->facet_distance = 0;
+    out->edge_size = 0;
+    out->smallest_distance = 0;
+    out->cell_size = 0;
   }
-  return mlim_options_complete(p->field, context, &p->options);
+  if (demand->has_bounds_only)
+  {
+    out->volume_tolerance = 0;
+  }
+  return mlim_options_complete(field, context, out);
 }
 
 static mlim_status run_stages(
-  const mlim_grid* grid, double facet_size, stopwatch* watch, products* p, char* message)
+  const mlim_grid* grid, const bench_demand* demand, stopwatch* watch, products* p, char* message)
 {
-  mlim_context context = { .progress = on_progress, .user = watch };
+  mlim_context context = { .progress = on_progress,
+    .parallel_for = demand->thread_count > 0 ? bench_threads_for : NULL,
+    .user = watch };
   const double user_begin = bench_clock_user();
   const double wall_begin = bench_clock_wall();
   switch_to(watch, MLIM_STAGE_FIELD);
   mlim_status status = mlim_field_create(grid, &context, &p->field);
   if (status == MLIM_OK)
   {
-    status = complete_options(grid, facet_size, &context, p);
+    status = bench_options(grid, p->field, demand, &context, &p->options);
   }
   if (status == MLIM_OK)
   {
@@ -203,15 +211,20 @@ static void copy_counts(const products* p, const mlim_grid* grid, bench_figures*
   f->vertex_count = p->mesh.vertex_count;
   f->triangle_count = p->mesh.triangle_count;
   f->insertion_count = p->mesh.report.insertion_count;
+  f->curve_count = p->curves.curve_count;
   f->ball_count = p->balls.ball_count;
 }
 
-static void run_case(const bench_case* one, const char* folder, bench_figures* out)
+static void run_case(const bench_demand* demand, const char* folder, bench_figures* out)
 {
   *out = (bench_figures){ 0 };
   bench_image image;
   products made = { 0 };
-  if (bench_case_load(one, folder, out->message, &image))
+  if (demand->thread_count > 0)
+  {
+    bench_threads_set(demand->thread_count);
+  }
+  if (bench_case_load(demand->one, folder, out->message, &image))
   {
     out->has_failed = 1;
     return;
@@ -219,7 +232,7 @@ static void run_case(const bench_case* one, const char* folder, bench_figures* o
   bench_memory_reset();
   out->input_memory = bench_memory_now();
   stopwatch watch = { .figures = out, .stage = MLIM_STAGE_END };
-  const mlim_status status = run_stages(&image.grid, one->facet_size, &watch, &made, out->message);
+  const mlim_status status = run_stages(&image.grid, demand, &watch, &made, out->message);
   out->has_failed = status != MLIM_OK && status != MLIM_VERTEX_LIMIT;
   double* points = NULL;
   copy_counts(&made, &image.grid, out);
@@ -241,59 +254,25 @@ static void run_case(const bench_case* one, const char* folder, bench_figures* o
 
 /* ---- its process ---- */
 
-static int read_whole(int from, bench_figures* out)
+typedef struct job
 {
-  size_t done = 0;
-  while (done < sizeof *out)
-  {
-    const ssize_t got = read(from, (char*)out + done, sizeof *out - done);
-    if (got <= 0)
-    {
-      return 1;
-    }
-    done += (size_t)got;
-  }
-  return 0;
+  const bench_demand* demand;
+  const char* folder;
+} job;
+
+static void work(const void* given, void* out)
+{
+  const job* one = given;
+  run_case(one->demand, one->folder, out);
 }
 
-static void fail(bench_figures* out, const char* text)
+void bench_measure(const bench_demand* demand, const char* folder, bench_figures* out)
 {
-  *out = (bench_figures){ .has_failed = 1 };
-  snprintf(out->message, sizeof out->message, "%s", text);
-}
-
-/* A process of its own: neither the heap nor the peak of one run shows in another's. */
-void bench_measure(const bench_case* one, const char* folder, bench_figures* out)
-{
-  int ends[2];
-  fflush(NULL);
-  if (pipe(ends) != 0)
+  const job one = { demand, folder };
+  char message[BENCH_MESSAGE_SIZE];
+  if (bench_process_run(work, &one, 0, sizeof *out, out, message))
   {
-    fail(out, "There is no pipe for the run's process.");
-    return;
+    *out = (bench_figures){ .has_failed = 1 };
+    memcpy(out->message, message, sizeof message);
   }
-  const pid_t child = fork();
-  if (child == 0)
-  {
-    close(ends[0]);
-    run_case(one, folder, out);
-    const ssize_t written = write(ends[1], out, sizeof *out);
-    _exit(written == (ssize_t)sizeof *out ? 0 : 1);
-  }
-  close(ends[1]);
-  if (child < 0)
-  {
-    fail(out, "The run's process cannot be started.");
-  }
-  else
-  {
-    int state = 0;
-    const int is_lost = read_whole(ends[0], out);
-    waitpid(child, &state, 0);
-    if (is_lost)
-    {
-      fail(out, WIFSIGNALED(state) ? strsignal(WTERMSIG(state)) : "The run's process was lost.");
-    }
-  }
-  close(ends[0]);
 }

@@ -1,15 +1,9 @@
 #include "record.h"
 
-#include "bulk.h"
+#include "report.h"
 #include "table.h"
 
 #include <stdlib.h>
-#include <string.h>
-#include <time.h>
-#include <unistd.h>
-
-static const char BEGIN_MARK[] = "<!-- figures: begin -->\n";
-static const char END_MARK[] = "<!-- figures: end -->\n";
 
 static const double MEGABYTE = 1024.0 * 1024.0;
 static const double KILOBYTE = 1024.0;
@@ -52,51 +46,6 @@ void bench_result_add(bench_result* result, const bench_figures* figures)
   take_more(&best->input_memory, figures->input_memory);
   take_more(&best->peak_memory, figures->peak_memory);
   take_more(&best->refinement_memory, figures->refinement_memory);
-}
-
-/* ---- the machine ---- */
-
-/* The value of "key : value" in the system's list of processors, without the end of its line. */
-static void read_processor(char* out, size_t size)
-{
-  snprintf(out, size, "unknown processor");
-  FILE* file = fopen("/proc/cpuinfo", "r");
-  if (file == NULL)
-  {
-    return;
-  }
-  char line[256];
-  int is_found = 0;
-  while (!is_found && fgets(line, sizeof line, file) != NULL)
-  {
-    const char* value = strchr(line, ':');
-    if (strncmp(line, "model name", strlen("model name")) == 0 && value != NULL)
-    {
-      is_found = 1;
-      value += 1 + strspn(value + 1, " \t");
-      snprintf(out, size, "%.*s", (int)strcspn(value, "\n"), value);
-    }
-  }
-  fclose(file);
-}
-
-static void write_machine(const char* command, FILE* out)
-{
-  char processor[256];
-  char date[32] = "";
-  const time_t now = time(NULL);
-  struct tm day;
-  if (localtime_r(&now, &day) != NULL)
-  {
-    strftime(date, sizeof date, "%Y-%m-%d", &day);
-  }
-  read_processor(processor, sizeof processor);
-  fprintf(out, "- Date: %s\n", date);
-  fprintf(
-    out, "- Machine: %s, %ld cores; one thread in use\n", processor, sysconf(_SC_NPROCESSORS_ONLN));
-  fprintf(out, "- Compiler: %s; CGAL %s; VTK %s\n", BENCH_COMPILER, bench_bulk_version(),
-    bench_image_version());
-  fprintf(out, "- Command: `%s`\n\n", command);
 }
 
 /* ---- the tables ---- */
@@ -223,60 +172,9 @@ void bench_record_write(const bench_result* results, size_t count, const char* c
     "curves", "balls", "refinement", "mesh, certificate", "total", "wall clock", NULL };
   static const char* const refinement[] = { "case", "facet size", "vertices", "balls", "insertions",
     "µs a vertex", "bulk s", "ratio to bulk", "image MB", "peak MB", "KB a vertex", NULL };
-  write_machine(command, out);
+  bench_report_machine(command, 1, out);
   write_table("Seconds of each stage:", stages, add_stage_row, results, count, out);
   write_table("Refinement against bulk insertion, and memory:", refinement, add_refinement_row,
     results, count, out);
   write_remarks(results, count, out);
-}
-
-/* ---- the file ---- */
-
-/* The whole text of a file; NULL: it cannot be read. */
-static char* read_text(const char* path)
-{
-  FILE* file = fopen(path, "rb");
-  char* text = NULL;
-  if (file == NULL)
-  {
-    return NULL;
-  }
-  if (fseek(file, 0, SEEK_END) == 0)
-  {
-    const long size = ftell(file);
-    rewind(file);
-    text = size < 0 ? NULL : malloc((size_t)size + 1);
-    if (text != NULL)
-    {
-      text[fread(text, 1, (size_t)size, file)] = '\0';
-    }
-  }
-  fclose(file);
-  return text;
-}
-
-int bench_record_replace(const char* path, const char* text)
-{
-  int result = 1;
-  FILE* file = NULL;
-  char* old = read_text(path);
-  char* begin = old == NULL ? NULL : strstr(old, BEGIN_MARK);
-  char* end = begin == NULL ? NULL : strstr(begin, END_MARK);
-  if (end == NULL)
-  {
-    fprintf(stderr, "%s cannot be read, or lacks the lines %sand %s", path, BEGIN_MARK, END_MARK);
-    goto done;
-  }
-  file = fopen(path, "wb");
-  if (file == NULL)
-  {
-    fprintf(stderr, "%s cannot be written.\n", path);
-    goto done;
-  }
-  *begin = '\0';
-  fprintf(file, "%s%s\n%s%s", old, BEGIN_MARK, text, end);
-  result = fclose(file) != 0;
-done:
-  free(old);
-  return result;
 }

@@ -1,10 +1,14 @@
-/* The best figures of all runs as text, and their place in a file. */
+/* The best figures of all runs as text. */
 #ifndef mlim_record_h
 #define mlim_record_h
 
 #include "measure.h"
 
 #include <stdio.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef struct bench_result
 {
@@ -20,8 +24,8 @@ void bench_result_add(bench_result* result, const bench_figures* figures);
 /* Machine, versions, date and command, then the tables in Markdown. */
 void bench_record_write(const bench_result* results, size_t count, const char* command, FILE* out);
 
-/* Puts the text between the two lines of the file that mark the place. Not 0: the file is as it
-   was, and the reason is on stderr. */
-int bench_record_replace(const char* path, const char* text);
+#ifdef __cplusplus
+}
+#endif
 
 #endif

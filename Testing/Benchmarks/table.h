@@ -5,6 +5,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum
 {
   BENCH_TABLE_COLUMNS = 16,
@@ -27,5 +31,9 @@ void bench_table_cell(bench_table* table, size_t* column, const char* format, ..
 
 /* The first column to the left, the others to the right. */
 void bench_table_write(const bench_table* table, FILE* out);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
