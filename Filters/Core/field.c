@@ -261,30 +261,30 @@ static void find_place(const mlim_field* field, const double point[3], place* ou
   }
 }
 
-static void look_at_place(const mlim_field* field, const place* place, mlim_field_look* look)
+static void look_at_place(const mlim_field* field, const place* where, mlim_field_look* look)
 {
   /* Rounding to float must not make the cube larger. */
   const double below_one = 1 - 1e-6;
-  if (!place->is_inside)
+  if (!where->is_inside)
   {
     look->clearance = (float)(below_one * cells_outside(field, look->point));
     look->label = field->outside_label;
     return;
   }
-  if (place->word & (uint32_t)MIXED)
+  if (where->word & (uint32_t)MIXED)
   {
     look->clearance = 0;
     look->label =
-      field_mixed_label(field_pool_entry(field, place->cell, place->word), place->word, place->at);
+      field_mixed_label(field_pool_entry(field, where->cell, where->word), where->word, where->at);
     return;
   }
   double least = 1;
   for (int k = 0; k < 3; ++k)
   {
-    least = mlim_min(least, mlim_min(place->at[k], 1 - place->at[k]));
+    least = mlim_min(least, mlim_min(where->at[k], 1 - where->at[k]));
   }
-  look->clearance = (float)(below_one * (place->reach - 1 + least));
-  look->label = (int32_t)place->word;
+  look->clearance = (float)(below_one * (where->reach - 1 + least));
+  look->label = (int32_t)where->word;
 }
 
 void mlim_field_look_at(const mlim_field* field, mlim_field_look* looks, size_t count)
