@@ -143,12 +143,12 @@ static void test_defaults(const mlim_grid* plain)
     CHECK(mlim_options_complete(field, NULL, &sized) == MLIM_OK);
     CHECK_BELOW(fabs(sized.facet_distance - 0.5 * scale), tolerance);
     CHECK_BELOW(fabs(sized.edge_size - 4 * scale), tolerance);
-    CHECK_BELOW(fabs(sized.smallest_distance - 0.5 * scale), tolerance);
-    sized.facet_size = 40 * scale;
+    CHECK_BELOW(fabs(sized.smallest_distance - 0.25 * scale), tolerance); /* at most */
+    sized.facet_size = scale;
     sized.smallest_distance = 0;
     CHECK(mlim_options_complete(field, NULL, &sized) == MLIM_OK);
-    CHECK_BELOW(fabs(sized.smallest_distance - 0.5 * scale), tolerance); /* at most */
-    CHECK_BELOW(sized.junction_merge_tolerance, 0);                      /* 0 means never */
+    CHECK_BELOW(fabs(sized.smallest_distance - 0.125 * scale), tolerance);
+    CHECK_BELOW(sized.junction_merge_tolerance, 0); /* 0 means never */
     mlim_field_free(field);
   }
 }

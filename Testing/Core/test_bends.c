@@ -26,6 +26,7 @@ static run ridge_run(
   image* im = image_sample(DIMS, SPACING, 3, 0, ridge);
   mlim_options options = run_options(2);
   options.facet_distance = 0.1;
+  options.smallest_distance = 0.25;
   options.vertex_limit = 200000;
   mlim_context context = { 0 };
   run r;

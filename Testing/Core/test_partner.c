@@ -113,8 +113,8 @@ int main(void)
   const double unit = SMALLEST;
   check_film(0.02 * unit, 0, 0, 0); /* too thin for any vertex */
   check_film(0.04 * unit, 0.1 * unit, 1, 1);
-  check_film(unit, 4 * unit, 1, 1);
-  check_film(0.5 * unit, 2 * unit, 1, 1);
+  check_film(unit, 3.8 * unit, 1, 1);
+  check_film(0.5 * unit, 1.9 * unit, 1, 1);
   check_film(0.5 * unit, 3 * unit, 1, 0); /* a pair would be too flat for the room round it */
   check_film(1.3 * unit, unit, 1, 1);
   check_film(1.5 * unit, unit, 1, 0); /* thick enough without */

@@ -142,6 +142,7 @@ static void test_bounds(int kind)
       options.facet_radius_edge_ratio = 3;
       *(double*)((char*)&options + rows[k].option) = rows[k].bounds[b];
       options.edge_size = fmin(1, options.facet_size); /* balls must not be in the way */
+      options.smallest_distance = options.facet_size / 8;
       run r;
       if (run_shape(kind, &options, &r) != MLIM_OK)
       {
