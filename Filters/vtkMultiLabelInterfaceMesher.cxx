@@ -317,7 +317,7 @@ void vtkMultiLabelInterfaceMesher::Mesh(
   shown.IsSinglePrecision = this->OutputPointsPrecision == SINGLE_PRECISION;
   WriteSurface(mesh, setting, shown, out);
   WriteSetting(setting, out->GetFieldData());
-  WriteFigures(mesh, out);
+  WriteFigures(mesh, setting, out);
   WriteCount("BallCount", view.ball_count, out->GetFieldData());
   WriteCount("VertexLimitReached", status == MLIM_VERTEX_LIMIT ? 1 : 0, out->GetFieldData());
   run.WriteTimes(out->GetFieldData());

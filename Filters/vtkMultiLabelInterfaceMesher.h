@@ -54,8 +54,8 @@
  *   or more triangles meet off the extracted curves and contacts; `LostCurveEdgeCount`: neighbours on
  *   a curve that no edge joins.
  * - Certificate: `CertifiedLabelCount`, `LostLabelCount`, `CertifiedComponentCount`,
- *   `LostComponentCount`, `DiskFailureCount`, `OpenEdgeCount`, `GridCrossingCount`,
- *   `FarCrossingCount`, `MaxCrossingDistance`, `MaxVolumeDifference`. The latter compares each
+ *   `LostComponentCount`, `DiskFailureCount` with their places and types (as `NodeType`) in
+ *   `DiskFailurePoints` and `DiskFailureTypes`, `OpenEdgeCount`, `GridCrossingCount`, `FarCrossingCount`, `MaxCrossingDistance`, `MaxVolumeDifference`. The latter compares each
  *   region with the volume where its label's interpolant is largest, over labels of at least 1000
  *   voxels.
  * - Left undone: `UnresolvedCrossingCount`, `UnresolvedPatchCount`, `UnresolvedSizeCount`,

@@ -2,6 +2,8 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -123,6 +125,28 @@ void WritePoints(const mlim_mesh& mesh, const Shown& shown, const Setting& setti
   out->GetPointData()->AddArray(counts);
 }
 
+/** Where vertices fail the disk condition, and what they are. */
+void WriteDiskFailures(const mlim_mesh& mesh, const Setting& setting, vtkFieldData* field)
+{
+  const vtkIdType count = static_cast<vtkIdType>(mesh.certificate.disk_failure_count);
+  vtkNew<vtkDoubleArray> places;
+  places->SetName("DiskFailurePoints");
+  places->SetNumberOfComponents(3);
+  places->SetNumberOfTuples(count);
+  vtkNew<vtkIntArray> types;
+  types->SetName("DiskFailureTypes");
+  types->SetNumberOfValues(count);
+  for (vtkIdType f = 0; f < count; ++f)
+  {
+    double world[3];
+    setting.GridFrame.ToWorld(mesh.disk_failures + 3 * f, world);
+    places->SetTuple(f, world);
+    types->SetValue(f, mesh.disk_failure_types[f]);
+  }
+  field->AddArray(places);
+  field->AddArray(types);
+}
+
 }
 
 void WriteSurface(
@@ -189,7 +213,7 @@ void WriteSurface(
   out->GetCellData()->AddArray(curves);
 }
 
-void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
+void WriteFigures(const mlim_mesh& mesh, const Setting& setting, vtkPolyData* out)
 {
   vtkFieldData* field = out->GetFieldData();
   WriteCount("VertexCount", mesh.vertex_count, field);
@@ -229,6 +253,7 @@ void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out)
   WriteCount("CertifiedComponentCount", certificate.component_count, field);
   WriteCount("LostComponentCount", certificate.lost_component_count, field);
   WriteCount("DiskFailureCount", certificate.disk_failure_count, field);
+  WriteDiskFailures(mesh, setting, field);
   WriteCount("OpenEdgeCount", certificate.open_edge_count, field);
   WriteCount("GridCrossingCount", certificate.grid_crossing_count, field);
   WriteCount("FarCrossingCount", certificate.far_crossing_count, field);

@@ -27,7 +27,7 @@ void WriteSurface(
   const mlim_mesh& mesh, const Setting& setting, const SurfaceChoice& choice, vtkPolyData* out);
 
 /** Counts, report and certificate of the mesh, to the field data. */
-void WriteFigures(const mlim_mesh& mesh, vtkPolyData* out);
+void WriteFigures(const mlim_mesh& mesh, const Setting& setting, vtkPolyData* out);
 
 }
 

@@ -306,8 +306,8 @@ static mlim_status count_disks(build* b, mlim_mesh* out)
 {
   const mlim_status status =
     mlim_refine_settle_disks(&b->refinement, MLIM_CERTIFY_FROM, b->context);
-  out->certificate.disk_failure_count = mlim_refine_count_broken(&b->refinement);
-  return status;
+  return status == MLIM_OK ? mlim_mesh_list_failures(&b->refinement.complex, b->context, out)
+                           : status;
 }
 
 static mlim_status certify(build* b, mlim_mesh* out)

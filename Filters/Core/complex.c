@@ -63,6 +63,16 @@ void mlim_complex_free(mlim_complex* complex)
   *complex = (mlim_complex){ 0 };
 }
 
+size_t mlim_complex_count_broken(const mlim_complex* complex)
+{
+  size_t count = 0;
+  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
+  {
+    count += complex->vertices[v].is_broken;
+  }
+  return count;
+}
+
 void mlim_complex_facet_vertices(
   const mlim_complex* complex, int32_t cell, int index, int32_t out[3])
 {

@@ -122,6 +122,9 @@ void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* mad
 /* Notes that a cell's label was changed from outside: the stars of its vertices are dirty. */
 void mlim_complex_touch_cell(mlim_complex* complex, int32_t cell);
 
+/* Vertices whose disk failed at the last look. */
+size_t mlim_complex_count_broken(const mlim_complex* complex);
+
 /* The three vertices of facet `index` of a cell, so that its normal points out of the cell. */
 void mlim_complex_facet_vertices(
   const mlim_complex* complex, int32_t cell, int index, int32_t out[3]);

@@ -116,16 +116,16 @@ static void read_curves(reader* r, const int32_t* vertex_of_ball)
   mesh->contact_count = mesh->junction_count - junctions;
 }
 
-/* Number of labels at a vertex, the outside being one, and whether it lies on the box. */
-static void describe_vertex(reader* r, const mlim_vertex* vertex, size_t at)
+int32_t mlim_mesh_node_type(
+  const mlim_complex* complex, const mlim_vertex* vertex, int32_t* label_count)
 {
-  const mlim_field* field = r->complex->oracle.field;
+  const mlim_field* field = complex->oracle.field;
   int32_t type = MLIM_NODE_INTERFACE;
   int32_t count = 2;
   int is_on_box = vertex->sheet.face >= 0;
   if (vertex->kind == MLIM_VERTEX_BALL)
   {
-    const mlim_balls* balls = r->complex->balls;
+    const mlim_balls* balls = complex->balls;
     const int32_t set = balls->ball_sets[vertex->ball];
     int has_outside = 0;
     count = 0;
@@ -141,9 +141,8 @@ static void describe_vertex(reader* r, const mlim_vertex* vertex, size_t at)
     count += has_outside;
     type = balls->ball_curves[vertex->ball] < 0 ? MLIM_NODE_JUNCTION : MLIM_NODE_CURVE;
   }
-  r->mesh->node_types[at] = type + (is_on_box ? MLIM_NODE_ON_BOX : 0);
-  r->mesh->label_counts[at] = count;
-  mlim_copy(vertex->point, r->mesh->vertices + 3 * at);
+  *label_count = count;
+  return type + (is_on_box ? MLIM_NODE_ON_BOX : 0);
 }
 
 static void measure_volumes(mlim_mesh* mesh, const mlim_field* field)
@@ -216,7 +215,10 @@ static void read_all(reader* r, int32_t* vertex_of_ball)
   {
     if (r->vertex_of[v] >= 0)
     {
-      describe_vertex(r, &complex->vertices[v], (size_t)r->vertex_of[v]);
+      const size_t at = (size_t)r->vertex_of[v];
+      r->mesh->node_types[at] =
+        mlim_mesh_node_type(complex, &complex->vertices[v], &r->mesh->label_counts[at]);
+      mlim_copy(complex->vertices[v].point, r->mesh->vertices + 3 * at);
     }
   }
 }
@@ -245,6 +247,31 @@ mlim_status mlim_mesh_read_mapped(
   return status;
 }
 
+mlim_status mlim_mesh_list_failures(
+  const mlim_complex* complex, mlim_context* context, mlim_mesh* mesh)
+{
+  const size_t count = mlim_complex_count_broken(complex);
+  mesh->disk_failures = mlim_allocate(3 * count, sizeof *mesh->disk_failures);
+  mesh->disk_failure_types = mlim_allocate(count, sizeof *mesh->disk_failure_types);
+  if (mesh->disk_failures == NULL || mesh->disk_failure_types == NULL)
+  {
+    return mlim_fail_memory(context, "the mesh");
+  }
+  size_t at = 0;
+  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
+  {
+    const mlim_vertex* vertex = &complex->vertices[v];
+    int32_t label_count;
+    if (vertex->is_broken)
+    {
+      mlim_copy(vertex->point, mesh->disk_failures + 3 * at);
+      mesh->disk_failure_types[at++] = mlim_mesh_node_type(complex, vertex, &label_count);
+    }
+  }
+  mesh->certificate.disk_failure_count = count;
+  return MLIM_OK;
+}
+
 mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, mlim_mesh* out)
 {
   *out = (mlim_mesh){ 0 };
@@ -269,5 +296,7 @@ void mlim_mesh_free(mlim_mesh* mesh)
   mlim_release(mesh->edge_curves);
   mlim_release(mesh->junctions);
   mlim_release(mesh->volumes);
+  mlim_release(mesh->disk_failures);
+  mlim_release(mesh->disk_failure_types);
   *mesh = (mlim_mesh){ 0 };
 }

@@ -11,4 +11,13 @@ mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, m
 mlim_status mlim_mesh_read_mapped(
   const mlim_complex* complex, mlim_context* context, int32_t* vertex_of, mlim_mesh* out);
 
+/* MLIM_NODE_... of a vertex, and the number of labels that meet at it, the outside being one. */
+int32_t mlim_mesh_node_type(
+  const mlim_complex* complex, const mlim_vertex* vertex, int32_t* label_count);
+
+/* The certificate's disk_failure_count with their places and types: the vertices whose last look at their
+   disk failed. Also those of no triangle. */
+mlim_status mlim_mesh_list_failures(
+  const mlim_complex* complex, mlim_context* context, mlim_mesh* mesh);
+
 #endif

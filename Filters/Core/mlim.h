@@ -400,6 +400,10 @@ typedef struct mlim_mesh
   size_t contact_count; /* the last of the junctions are contacts */
   size_t label_count;
   double* volumes; /* per label: enclosed by its triangles; 0 for the outside's */
+  double*
+    disk_failures; /* places of the vertices that do not satisfy the disk condition, 3 each, as
+                                  many as the certificate counts */
+  int32_t* disk_failure_types; /* MLIM_NODE_... of each */
   mlim_report report;
   mlim_certificate certificate;
 } mlim_mesh;

@@ -448,14 +448,3 @@ mlim_status mlim_refine_settle_disks(
   complex->dirty_count = 0;
   return status;
 }
-
-size_t mlim_refine_count_broken(const mlim_refinement* refinement)
-{
-  const mlim_complex* complex = &refinement->complex;
-  size_t count = 0;
-  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
-  {
-    count += complex->vertices[v].is_broken;
-  }
-  return count;
-}

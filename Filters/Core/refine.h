@@ -55,7 +55,4 @@ void mlim_refine_tighten(mlim_refinement* refinement, const unsigned char* is_ti
 mlim_status mlim_refine_settle_disks(
   mlim_refinement* refinement, double done, mlim_context* context);
 
-/* Number of vertices that fail the disk condition, settled before. */
-size_t mlim_refine_count_broken(const mlim_refinement* refinement);
-
 #endif

@@ -1,5 +1,6 @@
 /* Refinement as a fixed point, its bounds one by one, and its vertex limit. */
 #include "audit.h"
+#include "mesh.h"
 #include "refine.h"
 #include "seeds.h"
 #include "shapes.h"
@@ -31,6 +32,28 @@ static void check_disks(mlim_refinement* refinement)
   }
 }
 
+/* Each vertex that fails is listed once, by place and type. */
+static void check_listed(const mlim_complex* complex)
+{
+  mlim_mesh mesh = { 0 };
+  size_t at = 0;
+  CHECK(mlim_mesh_list_failures(complex, NULL, &mesh) == MLIM_OK);
+  CHECK_COUNT(mesh.certificate.disk_failure_count, mlim_complex_count_broken(complex));
+  for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
+  {
+    const mlim_vertex* vertex = &complex->vertices[v];
+    if (vertex->is_broken && at < mesh.certificate.disk_failure_count)
+    {
+      const int32_t type = mesh.disk_failure_types[at] % MLIM_NODE_ON_BOX;
+      CHECK(mlim_distance(vertex->point, mesh.disk_failures + 3 * at) == 0);
+      CHECK((type == MLIM_NODE_INTERFACE) == (vertex->kind == MLIM_VERTEX_SURFACE));
+      ++at;
+    }
+  }
+  CHECK_COUNT(at, mesh.certificate.disk_failure_count);
+  mlim_mesh_free(&mesh);
+}
+
 /* A cell with a label of its own breaks disks, which are noticed once it is said to have changed. */
 static void break_disks(mlim_refinement* refinement)
 {
@@ -47,7 +70,8 @@ static void break_disks(mlim_refinement* refinement)
     }
   }
   check_disks(refinement);
-  CHECK(mlim_refine_count_broken(refinement) > 0);
+  CHECK(mlim_complex_count_broken(complex) > 0);
+  check_listed(complex);
 }
 
 static void test_fixed_point(int kind)
@@ -81,7 +105,7 @@ static void test_fixed_point(int kind)
   CHECK(mlim_refine_run(&refinement, MLIM_GOAL_TOPOLOGY, NULL) == MLIM_OK);
   CHECK_COUNT(refinement.complex.vertex_count, fine);
   check_disks(&refinement);
-  CHECK_COUNT(mlim_refine_count_broken(&refinement), 0);
+  CHECK_COUNT(mlim_complex_count_broken(&refinement.complex), 0);
   break_disks(&refinement);
   mlim_refine_free(&refinement);
   mlim_components_free(&components);

@@ -144,6 +144,7 @@ class TestMesh(unittest.TestCase):
 
     def test_report(self):
         surface = mlim.mesh(make_image())
+        self.assertEqual(surface.GetFieldData().GetArray("DiskFailurePoints").GetNumberOfTuples(), 0)
         text = mlim.report(surface)
         self.assertIn(f"{surface.GetNumberOfPolys():,}", text)
         for word in ("vertices", "curves", "radius-edge", "labels in the mesh", "Seconds"):

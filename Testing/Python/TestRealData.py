@@ -114,14 +114,31 @@ def run_case(path, facet_size_spacings):
     figures["mesh_seconds"] = mesh_seconds
     figures["facet_size"] = option_used(surface, "FacetSize")
     figures["failed_disks"] = int(option_used(surface, "DiskFailureCount"))
+    figures["named_disks"] = named_disks(surface)
     figures["name"] = path.stem
     return figures
 
 
+def named_disks(surface):
+    """Of the vertices that fail the disk condition, those whose place and type are a point's of the mesh."""
+    arrays = surface.GetFieldData()
+    places = vtk_to_numpy(arrays.GetArray("DiskFailurePoints")).reshape(-1, 3)
+    types = vtk_to_numpy(arrays.GetArray("DiskFailureTypes"))
+    points = vtk_to_numpy(surface.GetPoints().GetData())
+    node_types = vtk_to_numpy(surface.GetPointData().GetArray("NodeType"))
+    return sum(
+        bool(((points == place).all(axis=1) & (node_types == kind)).any())
+        for place, kind in zip(places, types)
+    )
+
+
 def disk_failures(figures):
-    """Vertices that fail the disk condition: at most 1 in 10,000."""
+    """Vertices that fail the disk condition: at most 1 in 10,000, each named by place and type."""
     failed, points = figures["failed_disks"], figures["points"]
-    return [f"{failed} of {points} disks fail"] if failed > points / 10000 else []
+    found = [f"{failed} of {points} disks fail"] if failed > points / 10000 else []
+    if figures["named_disks"] != failed:
+        found.append(f"{figures['named_disks']} of {failed} disks that fail are named by their place")
+    return found
 
 
 def vertex_count_failures(figures, facet_size_spacings):

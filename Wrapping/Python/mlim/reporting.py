@@ -71,6 +71,13 @@ _VOLUME_UNDONE = (
 )
 
 
+# Values of the arrays NodeType and DiskFailureTypes; the image's box adds to them.
+_NODE_TYPES = {2: "on an interface", 3: "on a curve", 4: "at a junction or contact"}
+_NODE_ON_BOX = 10
+# Places of vertices that the report lists.
+_MOST_PLACES = 20
+
+
 def report(mesh: vtkPolyData | vtkUnstructuredGrid) -> str:
     """Counts, quality, certificate and times of a surface that mlim.mesh or the filter made, or of a
     volume.
@@ -114,13 +121,25 @@ def report(mesh: vtkPolyData | vtkUnstructuredGrid) -> str:
         ),
         "14.4g",
     )
-    lines += rows(
-        (("vertices off the disk condition", "DiskFailureCount"), ("open edges", "OpenEdgeCount")),
-        "14,.0f",
-    )
+    lines += rows((("vertices off the disk condition", "DiskFailureCount"),), "14,.0f")
+    lines += _disk_failures(arrays)
+    lines += rows((("open edges", "OpenEdgeCount"),), "14,.0f")
     lines += ["Seconds", *rows(_TIMES, "14.2f")]
     lines += [f"  {'in all':<36}{sum(value(name) for _, name in _TIMES):14.2f}"]
     return "\n".join(lines)
+
+
+def _disk_failures(arrays) -> list[str]:
+    """Kind and place of each vertex off the disk condition."""
+    places = arrays.GetArray("DiskFailurePoints")
+    types = arrays.GetArray("DiskFailureTypes")
+    lines = []
+    for k in range(min(places.GetNumberOfTuples(), _MOST_PLACES)):
+        kind = _NODE_TYPES[types.GetValue(k) % _NODE_ON_BOX]
+        where = ", ".join(f"{x:.6g}" for x in places.GetTuple3(k))
+        lines += [f"    {kind}, at ({where})"]
+    left = places.GetNumberOfTuples() - len(lines)
+    return [*lines, f"    and {left:,} more, in DiskFailurePoints"] if left > 0 else lines
 
 
 def _of(title: str, value, lost: str, total: str) -> str:
