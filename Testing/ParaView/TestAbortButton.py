@@ -56,7 +56,8 @@ class ParaView:
         )
 
     def close(self):
-        self.process.terminate()
+        # Asked to end while it draws, it may wait for itself for ever.
+        self.process.kill()
         self.process.wait()
         self.output.close()
 
