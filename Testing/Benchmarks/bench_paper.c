@@ -177,12 +177,7 @@ int main(int argc, char** argv)
   {
     return 1;
   }
-  size_t column = 0;
-  bench_table_row(table);
-  for (const char* const* heading = headings; *heading != NULL; ++heading)
-  {
-    bench_table_cell(table, &column, "%s", *heading);
-  }
+  bench_table_start(table, headings);
   for (int r = 0; r < ROW_COUNT; ++r)
   {
     bench_figures figures = { 0 };

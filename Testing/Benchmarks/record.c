@@ -50,18 +50,6 @@ void bench_result_add(bench_result* result, const bench_figures* figures)
 
 /* ---- the tables ---- */
 
-static void start_table(bench_table* table, const char* const* headings)
-{
-  size_t column = 0;
-  table->row_count = 0;
-  table->column_count = 0;
-  bench_table_row(table);
-  for (; *headings != NULL; ++headings)
-  {
-    bench_table_cell(table, &column, "%s", *headings);
-  }
-}
-
 static size_t start_row(bench_table* table, const bench_result* result)
 {
   size_t column = 0;
@@ -120,7 +108,7 @@ static void write_table(const char* title, const char* const* headings, row_func
   {
     return;
   }
-  start_table(table, headings);
+  bench_table_start(table, headings);
   for (size_t r = 0; r < count; ++r)
   {
     if (results[r].run_count > 0 && !results[r].best.has_failed)

@@ -82,3 +82,15 @@ void bench_table_write(const bench_table* table, FILE* out)
     }
   }
 }
+
+void bench_table_start(bench_table* table, const char* const* headings)
+{
+  size_t column = 0;
+  table->row_count = 0;
+  table->column_count = 0;
+  bench_table_row(table);
+  for (; *headings != NULL; ++headings)
+  {
+    bench_table_cell(table, &column, "%s", *headings);
+  }
+}

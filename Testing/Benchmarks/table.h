@@ -32,6 +32,9 @@ void bench_table_cell(bench_table* table, size_t* column, const char* format, ..
 /* The first column to the left, the others to the right. */
 void bench_table_write(const bench_table* table, FILE* out);
 
+/* Empties the table and gives it its first row. headings ends with NULL. */
+void bench_table_start(bench_table* table, const char* const* headings);
+
 #ifdef __cplusplus
 }
 #endif
