@@ -326,7 +326,8 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
   mlim_status (*const steps[])(build*, mlim_mesh*) = { tidy, settle_pinches, read, find_edges,
     find_patches, settle_edges, measure_quality, count_disks, certify };
   const size_t count = sizeof steps / sizeof *steps;
-  mlim_status status = MLIM_OK;
+  /* Seeding may have ended at the vertex limit. */
+  mlim_status status = mlim_refine_update(&b->refinement, b->context);
   for (size_t k = 0; k < count && status == MLIM_OK; ++k)
   {
     const double done = MLIM_CERTIFY_FROM * (double)k / (double)count;

@@ -1,10 +1,6 @@
 #include "clearance.h"
 
-#include "memory.h"
-#include "status.h"
-
-/* Two passes, exact for the Chebyshev distance. The outside counts as mixed, so that a clearance
-   never leaves the box. */
+/* Two passes, exact for the Chebyshev distance. The outside does not count: who goes there knows. */
 static void chamfer(uint8_t* distance, const int32_t dims[3])
 {
   const int64_t nx = dims[0];
@@ -26,16 +22,12 @@ static void chamfer(uint8_t* distance, const int32_t dims[3])
         const int64_t oz = z + others[n][1];
         const int is_in = oy >= 0 && oy < ny && oz >= 0 && oz < nz;
         const uint8_t* other = is_in ? distance + (oz * ny + oy) * nx : NULL;
-        for (int64_t x = 0; x < nx; ++x)
+        for (int64_t x = 0; other != NULL && x < nx; ++x)
         {
-          int least = 0;
-          if (other != NULL)
-          {
-            const int left = x > 0 ? other[x - 1] : 0;
-            const int right = x + 1 < nx ? other[x + 1] : 0;
-            least = other[x] < left ? other[x] : left;
-            least = right < least ? right : least;
-          }
+          const int left = x > 0 ? other[x - 1] : MAX_CLEARANCE;
+          const int right = x + 1 < nx ? other[x + 1] : MAX_CLEARANCE;
+          int least = other[x] < left ? other[x] : left;
+          least = right < least ? right : least;
           here[x] = here[x] > least + 1 ? (uint8_t)(least + 1) : here[x];
         }
       }
@@ -43,68 +35,61 @@ static void chamfer(uint8_t* distance, const int32_t dims[3])
       {
         const int64_t x = pass == 0 ? k : nx - 1 - k;
         const int64_t before = x + step;
-        const int near = before >= 0 && before < nx ? here[before] : 0;
+        const int near = before >= 0 && before < nx ? here[before] : MAX_CLEARANCE;
         here[x] = here[x] > near + 1 ? (uint8_t)(near + 1) : here[x];
       }
     }
   }
 }
 
-static void store_cell_clearances(mlim_field* field, const uint8_t* distance)
+/* The least distance of the cells of a brick, and that of each of them into its word if it has some. */
+static int store_brick(
+  mlim_field* field, const uint8_t* distance, const int32_t brick[3], uint32_t* words)
 {
   const int32_t* cells = field->grid.cells;
-  for (int32_t z = 0; z < cells[2]; ++z)
+  int32_t end[3];
+  int least = MAX_CLEARANCE;
+  for (int k = 0; k < 3; ++k)
   {
-    for (int32_t y = 0; y < cells[1]; ++y)
+    end[k] = BRICK * (brick[k] + 1) < cells[k] ? BRICK * (brick[k] + 1) : cells[k];
+  }
+  for (int32_t z = BRICK * brick[2]; z < end[2]; ++z)
+  {
+    for (int32_t y = BRICK * brick[1]; y < end[1]; ++y)
     {
-      for (int32_t bx = 0; bx < field->bricks[0]; ++bx)
+      const uint8_t* row = distance + (size_t)cells[0] * ((size_t)y + (size_t)cells[1] * (size_t)z);
+      for (int32_t x = BRICK * brick[0]; x < end[0]; ++x)
       {
-        const uint32_t coarse =
-          field->coarse[(size_t)bx +
-                        (size_t)field->bricks[0] *
-                          ((size_t)(y >> 2) + (size_t)field->bricks[1] * (size_t)(z >> 2))];
-        if (!(coarse & (uint32_t)MIXED))
+        least = row[x] < least ? row[x] : least;
+        uint32_t* word = words == NULL ? NULL : words + ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+        if (word != NULL && !(*word & (uint32_t)MIXED))
         {
-          continue;
-        }
-        uint32_t* words = field->layers[z >> 2].words + (coarse & DETAIL) * BRICK_CELLS +
-                          ((size_t)(y & 3) << 2 | (size_t)(z & 3) << 4);
-        const int32_t end = 4 * bx + 4 < cells[0] ? 4 * bx + 4 : cells[0];
-        for (int32_t x = 4 * bx; x < end; ++x)
-        {
-          if (!(words[x & 3] & (uint32_t)MIXED))
-          {
-            const size_t at =
-              (size_t)x + (size_t)cells[0] * ((size_t)y + (size_t)cells[1] * (size_t)z);
-            words[x & 3] |= (uint32_t)distance[at] << 16;
-          }
+          *word |= (uint32_t)row[x] << 16;
         }
       }
     }
   }
+  return least;
 }
 
-mlim_status mlim_clearance_measure(mlim_field* field, uint8_t* distance, mlim_context* context)
+void mlim_clearance_measure(mlim_field* field, uint8_t* distance)
 {
   chamfer(distance, field->grid.cells);
-  store_cell_clearances(field, distance);
-  const size_t bricks =
-    (size_t)field->bricks[0] * (size_t)field->bricks[1] * (size_t)field->bricks[2];
-  uint8_t* coarse = mlim_allocate(bricks, 1);
-  if (coarse == NULL)
+  int32_t brick[3];
+  uint32_t* coarse = field->coarse;
+  for (brick[2] = 0; brick[2] < field->bricks[2]; ++brick[2])
   {
-    return mlim_fail_memory(context, "the field's index");
+    for (brick[1] = 0; brick[1] < field->bricks[1]; ++brick[1])
+    {
+      for (brick[0] = 0; brick[0] < field->bricks[0]; ++brick[0], ++coarse)
+      {
+        const int is_mixed = (*coarse & (uint32_t)MIXED) != 0;
+        uint32_t* words =
+          is_mixed ? field->layers[brick[2]].words + (*coarse & DETAIL) * BRICK_CELLS : NULL;
+        const int least = store_brick(field, distance, brick, words);
+        /* Neighbouring uniform cells have one label: their common corners are grid points. */
+        *coarse |= is_mixed ? 0 : (uint32_t)least << 16;
+      }
+    }
   }
-  for (size_t b = 0; b < bricks; ++b)
-  {
-    coarse[b] = field->coarse[b] & (uint32_t)MIXED ? 0 : MAX_CLEARANCE;
-  }
-  /* Neighbouring uniform bricks have one label: their common corners are grid points. */
-  chamfer(coarse, field->bricks);
-  for (size_t b = 0; b < bricks; ++b)
-  {
-    field->coarse[b] |= coarse[b] > 0 ? (uint32_t)coarse[b] << 16 : 0;
-  }
-  mlim_release(coarse);
-  return MLIM_OK;
 }

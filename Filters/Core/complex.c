@@ -8,12 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-enum
-{
-  MAX_CROSSINGS = 16,     /* on one dual; more of them change nothing: it is refined anyway */
-  LOOK_EVERY_CELLS = 4096 /* cells between two looks at the host: about 20 ms */
-};
-
 mlim_status mlim_complex_create(
   const mlim_oracle* oracle, const mlim_balls* balls, mlim_context* context, mlim_complex* out)
 {
@@ -59,6 +53,7 @@ void mlim_complex_free(mlim_complex* complex)
   mlim_release(complex->facets);
   mlim_release(complex->free_facets);
   mlim_release(complex->fresh);
+  mlim_release(complex->made);
   mlim_release(complex->dirty);
   *complex = (mlim_complex){ 0 };
 }
@@ -135,7 +130,7 @@ int mlim_complex_is_on_sheet(
 /* ---- records ---- */
 
 /* Room is there: dirty_capacity grows with vertex_capacity. */
-static void mark_dirty(mlim_complex* complex, int32_t vertex)
+void mlim_complex_touch_vertex(mlim_complex* complex, int32_t vertex)
 {
   mlim_vertex* v = &complex->vertices[vertex];
   if (!v->is_dirty && v->kind != MLIM_VERTEX_FAR)
@@ -145,11 +140,11 @@ static void mark_dirty(mlim_complex* complex, int32_t vertex)
   }
 }
 
-static void mark_facet_dirty(mlim_complex* complex, int32_t cell, int index)
+void mlim_complex_touch_facet(mlim_complex* complex, int32_t cell, int index)
 {
   for (int k = 1; k < 4; ++k)
   {
-    mark_dirty(complex, complex->cells[cell].vertices[(index + k) & 3]);
+    mlim_complex_touch_vertex(complex, complex->cells[cell].vertices[(index + k) & 3]);
   }
 }
 
@@ -157,140 +152,17 @@ void mlim_complex_touch_cell(mlim_complex* complex, int32_t cell)
 {
   for (int k = 0; k < 4; ++k)
   {
-    mark_dirty(complex, complex->cells[cell].vertices[k]);
+    mlim_complex_touch_vertex(complex, complex->cells[cell].vertices[k]);
   }
 }
 
 /* Room for a use in every slot is there: free_capacity grows with facet_capacity. */
-static void kill_record(mlim_complex* complex, int32_t record)
+void mlim_complex_kill_record(mlim_complex* complex, int32_t record)
 {
   mlim_facet* facet = &complex->facets[record];
   facet->is_alive = 0;
   ++facet->generation;
   complex->free_facets[complex->free_count++] = record;
-}
-
-static int32_t new_record(mlim_complex* complex)
-{
-  if (complex->free_count > 0)
-  {
-    return complex->free_facets[--complex->free_count];
-  }
-  if (complex->facet_count >= INT32_MAX - 1 ||
-      mlim_reserve(&complex->facets, &complex->facet_capacity, complex->facet_count + 1,
-        sizeof *complex->facets) ||
-      mlim_reserve(&complex->free_facets, &complex->free_capacity, complex->facet_capacity,
-        sizeof *complex->free_facets) ||
-      mlim_reserve(
-        &complex->fresh, &complex->fresh_capacity, complex->facet_capacity, sizeof *complex->fresh))
-  {
-    return 0;
-  }
-  complex->facets[complex->facet_count] = (mlim_facet){ 0 };
-  return (int32_t)complex->facet_count++;
-}
-
-/* Index in `cell` of the vertex that its neighbour `other` does not have: their common facet. Asked
-   for by the neighbours' ids it could be wrong, since the id of a dead cell may be in use again. */
-static int index_apart(const mlim_cell* cell, const mlim_cell* other)
-{
-  for (int k = 0; k < 3; ++k)
-  {
-    const int32_t v = cell->vertices[k];
-    if (v != other->vertices[0] && v != other->vertices[1] && v != other->vertices[2] &&
-        v != other->vertices[3])
-    {
-      return k;
-    }
-  }
-  return 3;
-}
-
-/* The crossing farthest from the facet: Chew's rule. All its vertices are equally far in power. */
-static size_t farthest(const mlim_crossing* crossing, size_t count, const double vertex[3])
-{
-  size_t best = 0;
-  double most = -1;
-  for (size_t c = 0; c < count; ++c)
-  {
-    const double d = mlim_distance_squared(crossing[c].point, vertex);
-    if (d > most)
-    {
-      most = d;
-      best = c;
-    }
-  }
-  return best;
-}
-
-/* A dual that stays where the field is uniform, as most between cells of one label do: round each end
-   lies a cube of its label, and the two cover it together. */
-static int is_clear(const mlim_complex* complex, int32_t a, int32_t b)
-{
-  const double* inverse = mlim_field_grid_of(complex->oracle.field)->inverse_spacing;
-  const double* start = mlim_complex_center(complex, a);
-  const double* end = mlim_complex_center(complex, b);
-  double longest = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    longest = mlim_max(longest, fabs(start[k] - end[k]) * inverse[k]);
-  }
-  return longest <= (double)complex->cells[a].clearance + (double)complex->cells[b].clearance;
-}
-
-static mlim_sheet sheet_of(const mlim_crossing* crossing)
-{
-  const int is_up = crossing->from < crossing->to;
-  return (mlim_sheet){ .low = is_up ? crossing->from : crossing->to,
-    .high = is_up ? crossing->to : crossing->from,
-    .face = crossing->face };
-}
-
-/* Looks along the dual of a facet and records what it crosses. Returns 1 when out of memory. */
-static int record_facet(mlim_complex* complex, int32_t cell, int index)
-{
-  mlim_cell* a = &complex->cells[cell];
-  if (a->neighbors[index] == MLIM_NO_CELL)
-  {
-    return 0;
-  }
-  const int32_t other = a->neighbors[index];
-  mlim_cell* b = &complex->cells[other];
-  const int differs = a->label != b->label;
-  if (!differs && is_clear(complex, cell, other))
-  {
-    return 0;
-  }
-  mlim_crossing crossing[MAX_CROSSINGS];
-  const size_t count =
-    mlim_oracle_crossings_between(&complex->oracle, mlim_complex_center(complex, cell),
-      mlim_complex_center(complex, other), differs, MAX_CROSSINGS, crossing);
-  if (count == 0)
-  {
-    return 0;
-  }
-  const int32_t record = new_record(complex);
-  if (record == 0 || mlim_reserve(&complex->fresh, &complex->fresh_capacity,
-                       complex->fresh_count + 1, sizeof *complex->fresh))
-  {
-    return 1;
-  }
-  const double* near = complex->vertices[a->vertices[(index + 1) & 3]].point;
-  const mlim_crossing* far = &crossing[farthest(crossing, count, near)];
-  mlim_facet* facet = &complex->facets[record];
-  facet->sheet = sheet_of(far);
-  mlim_copy(far->point, facet->crossing);
-  facet->cell = cell;
-  facet->index = (unsigned char)index;
-  facet->is_alive = 1;
-  facet->is_multiple = count > 1 || !differs;
-  facet->is_judged = 0;
-  facet->is_settled = 0;
-  a->facets[index] = record;
-  b->facets[index_apart(b, a)] = record;
-  complex->fresh[complex->fresh_count++] = record;
-  mark_facet_dirty(complex, cell, index);
-  return 0;
 }
 
 /* ---- insertion ---- */
@@ -325,31 +197,6 @@ void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* mad
     complex->vertices[made->vertices[k]].cell = made->id;
   }
   mlim_copy(made->center, complex->centers + 3 * (size_t)made->id);
-}
-
-static void take_and_label(mlim_complex* complex, const mlim_delaunay_cells* made)
-{
-  enum
-  {
-    BATCH = 64
-  };
-  mlim_field_look looks[BATCH];
-  for (size_t begin = 0; begin < made->count; begin += BATCH)
-  {
-    const size_t count = made->count - begin < BATCH ? made->count - begin : BATCH;
-    for (size_t k = 0; k < count; ++k)
-    {
-      looks[k].point = made->cells[begin + k].center;
-    }
-    mlim_field_look_at(complex->oracle.field, looks, count);
-    for (size_t k = 0; k < count; ++k)
-    {
-      mlim_complex_take_cell(complex, &made->cells[begin + k]);
-      mlim_cell* cell = &complex->cells[made->cells[begin + k].id];
-      cell->label = looks[k].label;
-      cell->clearance = looks[k].clearance;
-    }
-  }
 }
 
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
@@ -399,13 +246,13 @@ static void empty_zone(mlim_complex* complex)
       const int32_t other = complex->cells[id].neighbors[k];
       if (complex->cells[other].mark == stamp)
       {
-        mark_facet_dirty(complex, id, k);
-        kill_record(complex, record);
+        mlim_complex_touch_facet(complex, id, k);
+        mlim_complex_kill_record(complex, record);
         continue;
       }
       complex->facets[record].cell = other;
       complex->facets[record].index =
-        (unsigned char)index_apart(&complex->cells[other], &complex->cells[id]);
+        (unsigned char)mlim_complex_index_apart(&complex->cells[other], &complex->cells[id]);
     }
   }
   for (size_t c = 0; c < complex->zone.count; ++c)
@@ -414,66 +261,49 @@ static void empty_zone(mlim_complex* complex)
   }
 }
 
-/* A facet between a new cell and one outside the zone: its record holds unless labels contradict. */
-static int inherit_facet(mlim_complex* complex, int32_t cell, int index)
+/* The cells that the triangulation has made, without labels for now. Records of the facets round them pass
+   over from the cells outside. Returns 1 when out of memory. */
+static int take_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
 {
-  mlim_cell* a = &complex->cells[cell];
-  mlim_cell* b = &complex->cells[a->neighbors[index]];
-  const int j = index_apart(b, a);
-  b->neighbors[j] = cell;
-  const int32_t record = b->facets[j];
-  const int differs = a->label != b->label;
-  if (record == 0)
+  if (mlim_complex_reserve_cells(complex, made) ||
+      mlim_reserve(&complex->made, &complex->made_capacity, complex->made_count + made->count,
+        sizeof *complex->made))
   {
-    return differs ? record_facet(complex, cell, index) : 0;
+    return 1;
   }
-  mlim_facet* facet = &complex->facets[record];
-  const int32_t low = a->label < b->label ? a->label : b->label;
-  const int32_t high = a->label < b->label ? b->label : a->label;
-  if (!facet->is_multiple && differs && facet->sheet.low == low && facet->sheet.high == high)
+  for (size_t k = 0; k < made->count; ++k)
   {
-    a->facets[index] = record;
-    return 0;
+    mlim_complex_take_cell(complex, &made->cells[k]);
+    complex->cells[made->cells[k].id].label = MLIM_NO_LABEL;
+    complex->made[complex->made_count++] = made->cells[k].id;
   }
-  mark_facet_dirty(complex, cell, index);
-  kill_record(complex, record);
-  b->facets[j] = 0;
-  return facet->is_multiple || differs ? record_facet(complex, cell, index) : 0;
+  return 0;
 }
 
-static int update_cells(mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex)
+static void join_outside(mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex)
 {
-  int failed = 0;
-  for (size_t k = 0; k < made->count && !failed; ++k)
+  for (size_t k = 0; k < made->count; ++k)
   {
     const int32_t id = made->cells[k].id;
-    for (int i = 0; i < 4; ++i)
+    mlim_cell* cell = &complex->cells[id];
+    int i = 0;
+    while (cell->vertices[i] != vertex)
     {
-      if (complex->cells[id].vertices[i] == vertex &&
-          complex->cells[id].neighbors[i] != MLIM_NO_CELL)
-      {
-        failed |= inherit_facet(complex, id, i);
-      }
+      ++i;
+    }
+    if (cell->neighbors[i] != MLIM_NO_CELL)
+    {
+      mlim_cell* outside = &complex->cells[cell->neighbors[i]];
+      const int j = mlim_complex_index_apart(outside, cell);
+      outside->neighbors[j] = id;
+      cell->facets[i] = outside->facets[j];
     }
   }
-  for (size_t k = 0; k < made->count && !failed; ++k)
-  {
-    const int32_t id = made->cells[k].id;
-    for (int i = 0; i < 4; ++i)
-    {
-      if (complex->cells[id].vertices[i] != vertex && id < complex->cells[id].neighbors[i])
-      {
-        failed |= record_facet(complex, id, i);
-      }
-    }
-  }
-  return failed;
 }
 
 mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
 {
   const int is_recorded = complex->cell_count > 0;
-  complex->fresh_count = 0;
   if (complex->vertex_count >= complex->vertex_limit)
   {
     return mlim_fail(context, MLIM_VERTEX_LIMIT,
@@ -502,51 +332,29 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   {
     return status;
   }
-  if (mlim_complex_reserve_cells(complex, &made))
+  if (take_cells(complex, &made))
   {
     return mlim_fail_memory(context, "the triangulation");
   }
-  take_and_label(complex, &made);
-  if (update_cells(complex, &made, vertex))
-  {
-    return mlim_fail_memory(context, "the restricted facets");
-  }
+  join_outside(complex, &made, vertex);
   return MLIM_OK;
 }
 
-mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_context* context)
+mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context)
 {
   mlim_delaunay_cells all;
-  mlim_status status = mlim_delaunay_all(complex->delaunay, context, &all);
+  const mlim_status status = mlim_delaunay_all(complex->delaunay, context, &all);
   if (status != MLIM_OK)
   {
     return status;
   }
-  if (mlim_complex_reserve_cells(complex, &all))
+  if (take_cells(complex, &all))
   {
     return mlim_fail_memory(context, "the triangulation");
   }
-  take_and_label(complex, &all);
-  complex->fresh_count = 0;
   for (size_t v = 0; v < complex->vertex_count; ++v)
   {
-    mark_dirty(complex, (int32_t)v); /* a ball without any facet fails too */
-  }
-  for (size_t k = 0; k < all.count; ++k)
-  {
-    const int32_t id = all.cells[k].id;
-    for (int i = 0; i < 4; ++i)
-    {
-      if (id < complex->cells[id].neighbors[i] && record_facet(complex, id, i))
-      {
-        return mlim_fail_memory(context, "the restricted facets");
-      }
-    }
-    status = k % LOOK_EVERY_CELLS == 0 ? mlim_progress(context, MLIM_STAGE_SURFACE, done) : MLIM_OK;
-    if (status != MLIM_OK)
-    {
-      return status;
-    }
+    mlim_complex_touch_vertex(complex, (int32_t)v); /* a ball without any facet fails too */
   }
   return MLIM_OK;
 }

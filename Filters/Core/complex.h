@@ -6,7 +6,7 @@
 
    An insertion only shortens the duals of the facets round its zone. So a dual that was found free
    of crossings stays so, and a single crossing stays where it is or vanishes: its record passes from
-   the dead cell to the new one unless the labels contradict it. */
+   the dead cell to the new one, until records.h finds that the labels contradict it. */
 #ifndef mlim_complex_h
 #define mlim_complex_h
 
@@ -20,6 +20,11 @@ typedef struct mlim_sheet
   int32_t low, high;
   int32_t face;
 } mlim_sheet;
+
+enum
+{
+  MLIM_NO_LABEL = -1 /* of a cell that was made since the records were brought up to date */
+};
 
 typedef enum mlim_vertex_kind
 {
@@ -82,7 +87,9 @@ typedef struct mlim_complex
   size_t facet_count, facet_capacity;
   int32_t* free_facets;
   size_t free_count, free_capacity;
-  int32_t* fresh; /* records made by the last insertion */
+  int32_t* made;  /* cells made since the records were brought up to date; dead or twice, some */
+  size_t made_count, made_capacity;
+  int32_t* fresh; /* records made the last time */
   size_t fresh_count, fresh_capacity;
   int32_t* dirty; /* vertices with is_dirty */
   size_t dirty_count, dirty_capacity;
@@ -106,21 +113,28 @@ mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex,
    point's squared distance to the nearest one without weight. Only once all is recorded. */
 double mlim_complex_power(const mlim_complex* complex);
 
-/* Inserts the vertex of the last probe, relabels and records. fresh lists the new records.
-   MLIM_VERTEX_LIMIT, and nothing changes, when that many vertices are there. */
+/* Inserts the vertex of the last probe. Its cells have no labels, and their facets no records but those
+   that they inherit, until records.h brings them up to date. MLIM_VERTEX_LIMIT, and nothing changes, when
+   that many vertices are there. */
 mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
 
-/* Labels and records everything that is there. For after a first series of insertions; until then
-   commits keep only the cells. `done` is reported as the share of the surface's stage. */
-mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_context* context);
+/* Takes over all cells that are there. For after a first series of insertions; until then commits leave
+   them to the triangulation. */
+mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context);
 
 /* Room for cells that the triangulation has made (not 0: out of memory), and a cell's place in it, without
    records; its label is 0 at first. For what goes in without being recorded: the inside of volumes. */
 int mlim_complex_reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made);
 void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* made);
 
-/* Notes that a cell's label was changed from outside: the stars of its vertices are dirty. */
+/* Notes that a vertex's star has changed; that of all vertices of a facet; that a cell's label was changed
+   from outside, and with it the stars of its vertices. */
+void mlim_complex_touch_vertex(mlim_complex* complex, int32_t vertex);
+void mlim_complex_touch_facet(mlim_complex* complex, int32_t cell, int index);
 void mlim_complex_touch_cell(mlim_complex* complex, int32_t cell);
+
+/* The record's place is free for another. */
+void mlim_complex_kill_record(mlim_complex* complex, int32_t record);
 
 /* Vertices whose disk failed at the last look. */
 size_t mlim_complex_count_broken(const mlim_complex* complex);
@@ -128,6 +142,22 @@ size_t mlim_complex_count_broken(const mlim_complex* complex);
 /* The three vertices of facet `index` of a cell, so that its normal points out of the cell. */
 void mlim_complex_facet_vertices(
   const mlim_complex* complex, int32_t cell, int index, int32_t out[3]);
+
+/* Index in `cell` of the vertex that its neighbour `other` does not have: their common facet. Asked
+   for by the neighbours' ids it could be wrong, since the id of a dead cell may be in use again. */
+static inline int mlim_complex_index_apart(const mlim_cell* cell, const mlim_cell* other)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    const int32_t v = cell->vertices[k];
+    if (v != other->vertices[0] && v != other->vertices[1] && v != other->vertices[2] &&
+        v != other->vertices[3])
+    {
+      return k;
+    }
+  }
+  return 3;
+}
 
 /* A cell's power centre. */
 static inline const double* mlim_complex_center(const mlim_complex* complex, int32_t cell)

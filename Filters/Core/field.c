@@ -283,7 +283,13 @@ static void look_at_place(const mlim_field* field, const place* where, mlim_fiel
   {
     least = mlim_min(least, mlim_min(where->at[k], 1 - where->at[k]));
   }
-  look->clearance = (float)(below_one * (where->reach - 1 + least));
+  double reach = where->reach - 1 + least;
+  for (int k = 0; k < 3 && where->word != (uint32_t)field->outside_label; ++k)
+  {
+    const double in = where->cell[k] + where->at[k];
+    reach = mlim_min(reach, mlim_min(in, field->grid.cells[k] - in));
+  }
+  look->clearance = (float)(below_one * reach);
   look->label = (int32_t)where->word;
 }
 

@@ -316,7 +316,11 @@ static mlim_status build_index(build_job* job, mlim_context* context)
     field->winners[p] = (uint16_t)(field->winners[p] & ~MLIM_TIED_FLAG);
   }
   status = mlim_progress(context, MLIM_STAGE_FIELD, 0.9);
-  return status != MLIM_OK ? status : mlim_clearance_measure(field, job->distance, context);
+  if (status == MLIM_OK)
+  {
+    mlim_clearance_measure(field, job->distance);
+  }
+  return status;
 }
 
 mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim_field** out)

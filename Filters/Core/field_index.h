@@ -15,7 +15,7 @@ enum
 {
   BRICK = 4,               /* cells along a brick's side */
   BRICK_CELLS = 64,        /* BRICK^3 */
-  MAX_CLEARANCE = 255,     /* in cells or bricks; fits the bits above the label */
+  MAX_CLEARANCE = 255,     /* in cells; fits the bits above the label */
   MIXED = (int)0x80000000, /* word: the low 30 bits lead to the detail */
   MANY = 0x40000000,       /* mixed cell word: more than two candidates */
   DETAIL = 0x3fffffff,     /* the low 30 bits */
@@ -42,14 +42,14 @@ struct mlim_field
   int32_t* ids;      /* a label */
   uint16_t* winners; /* a grid point: its label */
   int32_t bricks[3];
-  uint32_t* coarse; /* a brick: label | clearance in bricks << 16, or MIXED | brick in its layer */
+  uint32_t* coarse; /* a brick: label | least clearance of its cells << 16, or MIXED | brick in its layer */
   field_layer* layers;
   size_t layer_count;
   size_t max_candidates;
 };
 
 /* Word of a cell; *clearance (may be NULL) receives a number of cells c such that all cells within
-   Chebyshev distance < c are uniform with the same label and inside the box. 0 when mixed. */
+   Chebyshev distance < c are uniform with the same label or outside the box. 0 when mixed. */
 static inline uint32_t field_cell_word(
   const mlim_field* field, const int32_t cell[3], int* clearance)
 {
@@ -63,18 +63,16 @@ static inline uint32_t field_cell_word(
   {
     if (clearance != NULL)
     {
-      /* The uniform box reaches (d - 1) bricks beyond this one on each side. */
-      const int32_t reach = BRICK * ((int32_t)(word >> 16) - 1);
+      /* The uniform box reaches this many cells beyond the brick on each side. */
+      const int32_t reach = (int32_t)(word >> 16) - 1;
       int32_t least = INT32_MAX;
       for (int k = 0; k < 3; ++k)
       {
         const int32_t in = cell[k] & (BRICK - 1);
         const int32_t low = in + 1 + reach;
         const int32_t high = BRICK - in + reach;
-        const int32_t room = field->grid.cells[k] - cell[k]; /* the last brick may stick out */
         least = low < least ? low : least;
         least = high < least ? high : least;
-        least = room < least ? room : least;
       }
       *clearance = least;
     }

@@ -19,7 +19,7 @@ int mlim_partners_find(const mlim_complex* complex, const mlim_options* options,
   const mlim_vertex* vertex, mlim_partners* out);
 
 /* Inserts a partner of `vertex` unless it would be in a ball or beside a vertex of its own sheet.
-   *is_there: whether it was inserted; complex->fresh are the new records then. */
+   *is_there: whether it was inserted. */
 mlim_status mlim_partner_insert(mlim_complex* complex, const mlim_options* options,
   const mlim_vertex* partner, int32_t vertex, mlim_context* context, int* is_there);
 

@@ -2,6 +2,7 @@
 
 #include "memory.h"
 #include "partner.h"
+#include "records.h"
 #include "status.h"
 #include "vector.h"
 
@@ -12,7 +13,7 @@
 enum
 {
   LOOK_EVERY_BALLS = 256,  /* balls inserted between two looks at the host: about 5 ms */
-  REPORT_EVERY = 256,      /* insertions between two looks at the host: about 5 ms */
+  UPDATE_EVERY = 8192,     /* cells made between two updates: they are still in the cache then */
   LOOK_EVERY_DISKS = 4096, /* vertices checked between two looks: about 5 ms */
   JUDGE_EVERY = 65536      /* facets judged between two looks: about 20 ms */
 };
@@ -147,8 +148,8 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   if (status == MLIM_OK && *hidden_count == 0)
   {
     status = insert_known(r, known, context);
-    status =
-      status == MLIM_OK ? mlim_complex_record_all(&r->complex, r->progress, context) : status;
+    status = status == MLIM_OK ? mlim_complex_take_all(&r->complex, context) : status;
+    status = status == MLIM_OK ? mlim_refine_update(r, context) : status;
   }
   if (status != MLIM_OK)
   {
@@ -233,14 +234,6 @@ static mlim_status enqueue_fresh(mlim_refinement* r, mlim_context* context)
   return MLIM_OK;
 }
 
-/* Inserts the vertex of the last probe. */
-static mlim_status commit(mlim_refinement* r, mlim_context* context)
-{
-  const mlim_status status = mlim_complex_commit(&r->complex, context);
-  r->insertion_count += status == MLIM_OK;
-  return status == MLIM_OK ? enqueue_fresh(r, context) : status;
-}
-
 /* The partners of a vertex that was inserted just now. */
 static mlim_status insert_partners(
   mlim_refinement* r, const mlim_partners* partners, mlim_context* context)
@@ -253,7 +246,6 @@ static mlim_status insert_partners(
     status = mlim_partner_insert(
       &r->complex, r->options, &partners->vertices[k], vertex, context, &is_there);
     r->insertion_count += (size_t)is_there;
-    status = is_there ? enqueue_fresh(r, context) : status;
   }
   return status;
 }
@@ -279,8 +271,14 @@ static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_cont
   {
     return status;
   }
-  status = commit(r, context);
+  status = mlim_complex_commit(complex, context);
+  r->insertion_count += status == MLIM_OK;
   return status == MLIM_OK ? insert_partners(r, &partners, context) : status;
+}
+
+mlim_status mlim_refine_update(mlim_refinement* refinement, mlim_context* context)
+{
+  return mlim_records_update(&refinement->complex, refinement->progress, context);
 }
 
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context)
@@ -292,6 +290,13 @@ mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* contex
   return mlim_progress(context, MLIM_STAGE_SURFACE, r->progress);
 }
 
+static mlim_status update_and_enqueue(mlim_refinement* r, mlim_context* context)
+{
+  mlim_status status = mlim_refine_update(r, context);
+  status = status == MLIM_OK ? enqueue_fresh(r, context) : status;
+  return status == MLIM_OK ? mlim_refine_report(r, context) : status;
+}
+
 static mlim_status work_batch(mlim_refinement* r, mlim_badness badness, mlim_context* context)
 {
   mlim_status status = MLIM_OK;
@@ -300,18 +305,19 @@ static mlim_status work_batch(mlim_refinement* r, mlim_badness badness, mlim_con
     const mlim_queue_entry entry = r->queue.batch.entries[k];
     const mlim_facet* facet = &r->complex.facets[entry.record];
     if (!facet->is_alive || facet->generation != entry.generation ||
+        !mlim_records_hold(&r->complex, facet) ||
         (badness == MLIM_BAD_DISK &&
           !mlim_criteria_may_insert(&r->complex, r->options, facet, badness)))
     {
       continue;
     }
     status = insert_crossing(r, entry.record, context);
-    if (status == MLIM_OK && r->insertion_count % REPORT_EVERY == 0)
+    if (status == MLIM_OK && r->complex.made_count >= UPDATE_EVERY)
     {
-      status = mlim_refine_report(r, context);
+      status = update_and_enqueue(r, context);
     }
   }
-  return status;
+  return status == MLIM_OK ? update_and_enqueue(r, context) : status;
 }
 
 /* Queues the facet of a failed star whose crossing is farthest from the vertex. */
@@ -396,7 +402,8 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
 {
   mlim_refinement* r = refinement;
   set_goal(r, goal);
-  mlim_status status = enqueue_all(r, context);
+  mlim_status status = mlim_refine_update(r, context);
+  status = status == MLIM_OK ? enqueue_all(r, context) : status;
   /* Each round inserts at least one point or is the last, and the vertex limit bounds the points. */
   while (status == MLIM_OK)
   {

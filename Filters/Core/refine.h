@@ -43,6 +43,10 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
 mlim_status mlim_refine_ask(
   mlim_refinement* refinement, int32_t record, mlim_context* context, int* is_taken);
 
+/* Labels the cells and records the facets that insertions since the last time have made: before anything
+   but the triangulation is looked at. */
+mlim_status mlim_refine_update(mlim_refinement* refinement, mlim_context* context);
+
 /* Tells the host how far refinement is. */
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context);
 

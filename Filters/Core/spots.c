@@ -8,6 +8,7 @@
 #include "vector.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* In units of the smallest distance. A spot gathers what is within REACH of its first point; its
    contact goes MARGIN beyond them and is not larger than LARGEST: larger ones swallow what could be
@@ -101,8 +102,30 @@ static mlim_status gather_points(spotting* s, mlim_context* context)
   return MLIM_OK;
 }
 
+/* Along z, then y, then x: spots are taken in the order of the points, and so do not depend on that of the
+   records. */
+static int compare_points(const void* a, const void* b)
+{
+  const spot_point* x = (const spot_point*)a;
+  const spot_point* y = (const spot_point*)b;
+  for (int k = 2; k >= 0; --k)
+  {
+    if (x->point[k] != y->point[k])
+    {
+      return x->point[k] < y->point[k] ? -1 : 1;
+    }
+  }
+  return x->sheet.low != y->sheet.low     ? x->sheet.low - y->sheet.low
+         : x->sheet.high != y->sheet.high ? x->sheet.high - y->sheet.high
+                                          : x->sheet.face - y->sheet.face;
+}
+
 static mlim_status create_grids(spotting* s)
 {
+  if (s->point_count > 1)
+  {
+    qsort(s->points, s->point_count, sizeof *s->points, compare_points);
+  }
   s->members = mlim_allocate(s->point_count, sizeof *s->members);
   s->contacts = mlim_allocate(s->point_count, sizeof *s->contacts);
   if (s->members == NULL || s->contacts == NULL ||

@@ -362,6 +362,7 @@ static mlim_status look_for_components(
     }
     status =
       mlim_seeds_on_components(complex, v->components, is_wanted, min_voxels, context, &seeded);
+    status = status == MLIM_OK ? mlim_refine_update(v->refinement, context) : status;
   }
   *count += seeded;
   mlim_release(is_wanted);
@@ -393,6 +394,7 @@ mlim_status mlim_verify_round(mlim_verification* verification, mlim_context* con
   {
     size_t far = 0;
     status = look_for_far(verification, context, &far);
+    status = status == MLIM_OK ? mlim_refine_update(verification->refinement, context) : status;
     verification->is_near = far == 0;
     *count += far;
   }
