@@ -7,6 +7,7 @@
 #include "pinch.h"
 #include "quality.h"
 #include "refine.h"
+#include "refine_disks.h"
 #include "seeds.h"
 #include "spots.h"
 #include "status.h"
@@ -304,8 +305,7 @@ static mlim_status measure_quality(build* b, mlim_mesh* out)
 
 static mlim_status count_disks(build* b, mlim_mesh* out)
 {
-  const mlim_status status =
-    mlim_refine_settle_disks(&b->refinement, MLIM_CERTIFY_FROM, b->context);
+  const mlim_status status = mlim_disks_settle(&b->refinement, MLIM_CERTIFY_FROM, b->context);
   return status == MLIM_OK ? mlim_mesh_list_failures(&b->refinement.complex, b->context, out)
                            : status;
 }

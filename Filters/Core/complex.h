@@ -87,7 +87,7 @@ typedef struct mlim_complex
   size_t facet_count, facet_capacity;
   int32_t* free_facets;
   size_t free_count, free_capacity;
-  int32_t* made;  /* cells made since the records were brought up to date; dead or twice, some */
+  int32_t* made; /* cells made since the records were brought up to date; dead or twice, some */
   size_t made_count, made_capacity;
   int32_t* fresh; /* records made the last time */
   size_t fresh_count, fresh_capacity;

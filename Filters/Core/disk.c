@@ -8,7 +8,8 @@
 
 enum
 {
-  LONG_LINK = 64 /* vertices of a link from which on insertion is slower than qsort */
+  FIRST_TABLE = 256, /* slots; a star has about 25 cells */
+  LONG_LINK = 64     /* vertices of a link from which on insertion is slower than qsort */
 };
 
 mlim_status mlim_ball_links_create(
@@ -48,6 +49,7 @@ void mlim_ball_links_free(mlim_ball_links* links)
 void mlim_star_free(mlim_star* star)
 {
   mlim_release(star->cells);
+  mlim_release(star->seen);
   mlim_release(star->edges);
   mlim_release(star->facets);
   mlim_release(star->parents);
@@ -57,10 +59,45 @@ void mlim_star_free(mlim_star* star)
 
 /* ---- the star ---- */
 
+/* 1: the cell was not in the star. There is room: the table is at most half full. */
+static size_t add_seen(mlim_star* star, int32_t cell)
+{
+  const uint64_t entry = (uint64_t)star->stamp << 32 | (uint32_t)cell;
+  size_t at = (size_t)((uint32_t)cell * 2654435769u) & (star->seen_capacity - 1);
+  while (star->seen[at] >> 32 == star->stamp && star->seen[at] != entry)
+  {
+    at = (at + 1) & (star->seen_capacity - 1);
+  }
+  const size_t is_new = star->seen[at] != entry;
+  star->seen[at] = entry;
+  return is_new;
+}
+
+/* A larger table with the star's cells. Not 0: out of memory. */
+static int grow_table(mlim_star* star)
+{
+  const size_t capacity = star->seen_capacity == 0 ? FIRST_TABLE : 2 * star->seen_capacity;
+  uint64_t* seen = mlim_allocate_zeroed(capacity, sizeof *seen);
+  if (seen == NULL)
+  {
+    return 1;
+  }
+  mlim_release(star->seen);
+  star->seen = seen;
+  star->seen_capacity = capacity;
+  star->stamp = 1;
+  for (size_t c = 0; c < star->cell_count; ++c)
+  {
+    add_seen(star, star->cells[c]);
+  }
+  return 0;
+}
+
 /* Room for all that one more cell may add. Not 0: out of memory. */
 static int reserve(mlim_star* star)
 {
-  return mlim_reserve(
+  return (2 * (star->cell_count + 3) > star->seen_capacity && grow_table(star)) ||
+         mlim_reserve(
            &star->cells, &star->cell_capacity, star->cell_count + 3, sizeof *star->cells) ||
          mlim_reserve(
            &star->edges, &star->edge_capacity, star->edge_count + 6, sizeof *star->edges) ||
@@ -81,11 +118,10 @@ static const struct
 /* Each facet of the star is seen from its two cells and taken from the one with the lower id. What is not
    taken is written all the same and written over by the next: branches here would be foretold wrong at
    every other facet, and cost more than all the rest. */
-static void visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_star* star)
+static void visit_cell(const mlim_complex* complex, int32_t id, int32_t vertex, mlim_star* star)
 {
   const mlim_cell* cell = &complex->cells[id];
   const int32_t* v = cell->vertices;
-  const uint32_t stamp = complex->stamp;
   const int at = (v[1] == vertex) + 2 * (v[2] == vertex) + 3 * (v[3] == vertex);
   size_t cell_count = star->cell_count;
   size_t edge_count = star->edge_count;
@@ -98,10 +134,9 @@ static void visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_s
     {
       continue;
     }
-    mlim_cell* other = &complex->cells[n];
+    const mlim_cell* other = &complex->cells[n];
     star->cells[cell_count] = n;
-    cell_count += other->mark != stamp;
-    other->mark = stamp;
+    cell_count += add_seen(star, n);
     const size_t is_first = id < n;
     star->facets[facet_count] = cell->facets[k];
     facet_count += is_first & (cell->facets[k] != 0);
@@ -114,15 +149,20 @@ static void visit_cell(mlim_complex* complex, int32_t id, int32_t vertex, mlim_s
   star->facet_count = facet_count;
 }
 
-static int gather(mlim_complex* complex, int32_t vertex, mlim_star* star)
+static int gather(const mlim_complex* complex, int32_t vertex, mlim_star* star)
 {
   star->cell_count = star->edge_count = star->facet_count = 0;
   if (reserve(star))
   {
     return 1;
   }
+  if (++star->stamp == 0)
+  {
+    memset(star->seen, 0, star->seen_capacity * sizeof *star->seen);
+    star->stamp = 1;
+  }
   const int32_t first = complex->vertices[vertex].cell;
-  complex->cells[first].mark = ++complex->stamp;
+  add_seen(star, first);
   star->cells[star->cell_count++] = first;
   for (size_t c = 0; c < star->cell_count; ++c)
   {
@@ -360,8 +400,8 @@ static int holds(
   return anchored == part_count && found == count_neighbors(complex, links, ball);
 }
 
-mlim_status mlim_disk_check(mlim_complex* complex, const mlim_ball_links* links, int32_t vertex,
-  mlim_star* star, mlim_context* context, mlim_disk* out)
+mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* links,
+  int32_t vertex, mlim_star* star, mlim_context* context, mlim_disk* out)
 {
   *out = MLIM_DISK_EMPTY;
   if (gather(complex, vertex, star))

@@ -21,6 +21,9 @@ typedef struct mlim_star
 {
   int32_t* cells;
   size_t cell_count, cell_capacity;
+  uint64_t* seen;       /* table of the cells: stamp << 32 | cell */
+  size_t seen_capacity; /* a power of two */
+  uint32_t stamp;
   int32_t* edges; /* the facets' edges opposite to the vertex, 2 vertices each */
   size_t edge_count, edge_capacity;
   int32_t* facets; /* records in the star */
@@ -40,8 +43,8 @@ typedef enum mlim_disk
   MLIM_DISK_FAILS
 } mlim_disk;
 
-/* Checks one vertex; star->facets receives its records. */
-mlim_status mlim_disk_check(mlim_complex* complex, const mlim_ball_links* links, int32_t vertex,
-  mlim_star* star, mlim_context* context, mlim_disk* out);
+/* Checks one vertex; star->facets receives its records. Changes nothing but the star. */
+mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* links,
+  int32_t vertex, mlim_star* star, mlim_context* context, mlim_disk* out);
 
 #endif

@@ -42,7 +42,8 @@ struct mlim_field
   int32_t* ids;      /* a label */
   uint16_t* winners; /* a grid point: its label */
   int32_t bricks[3];
-  uint32_t* coarse; /* a brick: label | least clearance of its cells << 16, or MIXED | brick in its layer */
+  uint32_t*
+    coarse; /* a brick: label | least clearance of its cells << 16, or MIXED | brick in its layer */
   field_layer* layers;
   size_t layer_count;
   size_t max_candidates;

@@ -2,6 +2,7 @@
 
 #include "ball_list.h"
 #include "label_sets.h"
+#include "refine_disks.h"
 #include "status.h"
 #include "vector.h"
 
@@ -156,7 +157,7 @@ mlim_status mlim_pinch_run(
   const mlim_balls* old = complex->balls;
   pinching p = { .refinement = refinement, .context = context };
   *out = (mlim_balls){ 0 };
-  mlim_status status = mlim_refine_settle_disks(refinement, 0, context);
+  mlim_status status = mlim_disks_settle(refinement, 0, context);
   if (status != MLIM_OK)
   {
     return status;

@@ -93,6 +93,25 @@ uint64_t mlim_queue_place(const mlim_queue* queue, const double point[3])
   return place;
 }
 
+static int compare_placed(const void* a, const void* b)
+{
+  const mlim_placed* x = (const mlim_placed*)a;
+  const mlim_placed* y = (const mlim_placed*)b;
+  if (x->place != y->place)
+  {
+    return x->place < y->place ? -1 : 1;
+  }
+  return (x->id > y->id) - (x->id < y->id);
+}
+
+void mlim_queue_sort(mlim_placed* things, size_t count)
+{
+  if (count > 1)
+  {
+    qsort(things, count, sizeof *things, compare_placed);
+  }
+}
+
 int mlim_queue_push_at(
   mlim_queue* queue, int bin, const double point[3], int32_t record, uint32_t generation)
 {

@@ -52,4 +52,13 @@ int mlim_queue_next(mlim_queue* queue);
 /* Place of a point along the Morton curve. */
 uint64_t mlim_queue_place(const mlim_queue* queue, const double point[3]);
 
+/* Something at a place, and things in the order of the curve: each near the one before. */
+typedef struct mlim_placed
+{
+  uint64_t place;
+  int32_t id;
+} mlim_placed;
+
+void mlim_queue_sort(mlim_placed* things, size_t count);
+
 #endif

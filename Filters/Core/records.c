@@ -8,10 +8,11 @@
 
 enum
 {
+  FACETS = 4,         /* of a cell */
   MAX_CROSSINGS = 16, /* on one dual; more of them change nothing: it is refined anyway */
   PIECE = 64,         /* cells that one thread takes at a time */
-  WINDOW = 8192,      /* cells between two looks at the host, about 5 ms */
-  FEW = 1024          /* cells that are not worth waking a thread for */
+  PIECES = 128,       /* between two looks at the host, about 5 ms */
+  FEW = 16            /* pieces that are not worth waking a thread for */
 };
 
 /* What is new about a facet: its record goes if there is one, and another comes if it crosses. */
@@ -28,11 +29,15 @@ typedef struct finding
 typedef struct update
 {
   mlim_complex* complex;
-  size_t first;      /* of the window, among the cells made */
-  size_t cell_count; /* in the window */
+  double done;
   finding* findings; /* room for all facets of a piece's cells, piece after piece */
-  size_t counts[WINDOW / PIECE];
+  size_t counts[PIECES];
 } update;
+
+static finding* findings_of(const update* u, size_t piece)
+{
+  return u->findings + (size_t)FACETS * PIECE * (piece % PIECES);
+}
 
 static size_t least(size_t a, size_t b)
 {
@@ -44,8 +49,8 @@ static size_t least(size_t a, size_t b)
 static void label_piece(const update* u, size_t piece)
 {
   mlim_complex* complex = u->complex;
-  const size_t begin = u->first + piece * PIECE;
-  const size_t end = least(begin + PIECE, u->first + u->cell_count);
+  const size_t begin = piece * PIECE;
+  const size_t end = least(begin + PIECE, u->complex->made_count);
   mlim_field_look looks[PIECE];
   for (size_t k = begin; k < end; ++k)
   {
@@ -66,6 +71,13 @@ static void label_body(void* data, size_t begin, size_t end)
   {
     label_piece((const update*)data, piece);
   }
+}
+
+static mlim_status look_at_host(void* data, size_t begin, size_t end, mlim_context* context)
+{
+  (void)begin;
+  (void)end;
+  return mlim_progress(context, MLIM_STAGE_SURFACE, ((const update*)data)->done);
 }
 
 /* ---- facets ---- */
@@ -184,17 +196,17 @@ static int look_at_facet(const mlim_complex* complex, int32_t id, int index, fin
 static void look_at_piece(update* u, size_t piece)
 {
   const mlim_complex* complex = u->complex;
-  const size_t begin = u->first + piece * PIECE;
-  const size_t end = least(begin + PIECE, u->first + u->cell_count);
-  finding* out = u->findings + 4 * PIECE * piece;
+  const size_t begin = piece * PIECE;
+  const size_t end = least(begin + PIECE, u->complex->made_count);
+  finding* out = findings_of(u, piece);
   for (size_t k = begin; k < end; ++k)
   {
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < FACETS; ++i)
     {
       out += look_at_facet(complex, complex->made[k], i, out);
     }
   }
-  u->counts[piece] = (size_t)(out - (u->findings + 4 * PIECE * piece));
+  u->counts[piece % PIECES] = (size_t)(out - findings_of(u, piece));
 }
 
 static void look_body(void* data, size_t begin, size_t end)
@@ -261,19 +273,21 @@ static int apply(mlim_complex* complex, const finding* found)
   return 0;
 }
 
-static int apply_all(const update* u, size_t piece_count)
+static mlim_status apply_all(void* data, size_t begin, size_t end, mlim_context* context)
 {
-  for (size_t piece = 0; piece < piece_count; ++piece)
+  const update* u = (const update*)data;
+  for (size_t piece = begin; piece < end; ++piece)
   {
-    for (size_t k = 0; k < u->counts[piece]; ++k)
+    const finding* findings = findings_of(u, piece);
+    for (size_t k = 0; k < u->counts[piece % PIECES]; ++k)
     {
-      if (apply(u->complex, &u->findings[4 * PIECE * piece + k]))
+      if (apply(u->complex, &findings[k]))
       {
-        return 1;
+        return mlim_fail_memory(context, "the restricted facets");
       }
     }
   }
-  return 0;
+  return mlim_progress(context, MLIM_STAGE_SURFACE, u->done);
 }
 
 /* ---- the whole ---- */
@@ -296,37 +310,29 @@ static void keep_living(mlim_complex* complex)
   complex->made_count = kept;
 }
 
-/* Runs body over the windows of the cells made, and `finish` (may be NULL) after each of them. */
-static mlim_status run(update* u, mlim_body body, int (*finish)(const update*, size_t), double done,
-  mlim_context* context)
+static mlim_status run(update* u, mlim_body body,
+  mlim_status (*finish)(void*, size_t, size_t, mlim_context*), mlim_context* context)
 {
-  mlim_status status = MLIM_OK;
-  for (u->first = 0; u->first < u->complex->made_count && status == MLIM_OK; u->first += WINDOW)
-  {
-    u->cell_count = least(WINDOW, u->complex->made_count - u->first);
-    const size_t piece_count = (u->cell_count + PIECE - 1) / PIECE;
-    mlim_parallel_for(u->cell_count <= FEW ? NULL : context, piece_count, body, u);
-    if (finish != NULL && finish(u, piece_count))
-    {
-      return mlim_fail_memory(context, "the restricted facets");
-    }
-    status = u->cell_count == WINDOW ? mlim_progress(context, MLIM_STAGE_SURFACE, done) : MLIM_OK;
-  }
-  return status;
+  return mlim_parallel_batches(
+    context, &(mlim_batches){ .count = (u->complex->made_count + PIECE - 1) / PIECE,
+               .size = PIECES,
+               .few = FEW,
+               .body = body,
+               .finish = finish,
+               .job = u });
 }
 
 mlim_status mlim_records_update(mlim_complex* complex, double done, mlim_context* context)
 {
   complex->fresh_count = 0;
   keep_living(complex);
-  const size_t room = least(WINDOW, complex->made_count + PIECE);
-  update u = { .complex = complex, .findings = mlim_allocate(4 * room, sizeof(finding)) };
-  if (u.findings == NULL)
-  {
-    return mlim_fail_memory(context, "the restricted facets");
-  }
-  mlim_status status = run(&u, label_body, NULL, done, context);
-  status = status == MLIM_OK ? run(&u, look_body, apply_all, done, context) : status;
+  const size_t room = least(PIECES * PIECE, complex->made_count + PIECE);
+  update u = {
+    .complex = complex, .done = done, .findings = mlim_allocate(FACETS * room, sizeof(finding))
+  };
+  mlim_status status = u.findings == NULL ? mlim_fail_memory(context, "the restricted facets")
+                                          : run(&u, label_body, look_at_host, context);
+  status = status == MLIM_OK ? run(&u, look_body, apply_all, context) : status;
   mlim_release(u.findings);
   complex->made_count = 0;
   return status;

@@ -3,6 +3,8 @@
 #include "memory.h"
 #include "partner.h"
 #include "records.h"
+#include "refine_disks.h"
+#include "refine_judge.h"
 #include "status.h"
 #include "vector.h"
 
@@ -12,52 +14,24 @@
 
 enum
 {
-  LOOK_EVERY_BALLS = 256,  /* balls inserted between two looks at the host: about 5 ms */
-  UPDATE_EVERY = 8192,     /* cells made between two updates: they are still in the cache then */
-  LOOK_EVERY_DISKS = 4096, /* vertices checked between two looks: about 5 ms */
-  JUDGE_EVERY = 65536      /* facets judged between two looks: about 20 ms */
+  LOOK_EVERY_BALLS = 256, /* balls inserted between two looks at the host: about 5 ms */
+  UPDATE_EVERY = 8192     /* cells made between two updates: they are still in the cache then */
 };
 
 /* ---- start ---- */
 
-typedef struct ordered_vertex
-{
-  uint64_t place;
-  int32_t vertex;
-} ordered_vertex;
-
-static int compare_vertices(const void* a, const void* b)
-{
-  const ordered_vertex* x = (const ordered_vertex*)a;
-  const ordered_vertex* y = (const ordered_vertex*)b;
-  if (x->place != y->place)
-  {
-    return x->place < y->place ? -1 : 1;
-  }
-  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
-
-/* Along the Morton curve, so that each point is near the one before. */
-static void sort_along_curve(ordered_vertex* order, size_t count)
-{
-  if (count > 1)
-  {
-    qsort(order, count, sizeof *order, compare_vertices);
-  }
-}
-
 /* NULL: out of memory. */
-static ordered_vertex* order_points(const mlim_refinement* r, const double* points, size_t count)
+static mlim_placed* order_points(const mlim_refinement* r, const double* points, size_t count)
 {
-  ordered_vertex* order = mlim_allocate(count, sizeof *order);
+  mlim_placed* order = mlim_allocate(count, sizeof *order);
   for (size_t v = 0; order != NULL && v < count; ++v)
   {
-    order[v] = (ordered_vertex){ .place = mlim_queue_place(&r->queue, points + 3 * v),
-      .vertex = (int32_t)v };
+    order[v] =
+      (mlim_placed){ .place = mlim_queue_place(&r->queue, points + 3 * v), .id = (int32_t)v };
   }
   if (order != NULL)
   {
-    sort_along_curve(order, count);
+    mlim_queue_sort(order, count);
   }
   return order;
 }
@@ -88,11 +62,11 @@ static mlim_status insert_first(mlim_refinement* r, const mlim_vertex* vertex, s
 static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mlim_context* context,
   unsigned char* is_hidden, size_t* hidden_count)
 {
-  ordered_vertex* order = order_points(r, balls->centers, balls->ball_count);
+  mlim_placed* order = order_points(r, balls->centers, balls->ball_count);
   mlim_status status = order == NULL ? mlim_fail_memory(context, "the protecting balls") : MLIM_OK;
   for (size_t k = 0; k < balls->ball_count && status == MLIM_OK; ++k)
   {
-    const int32_t b = order[k].vertex;
+    const int32_t b = order[k].id;
     mlim_vertex vertex = {
       .kind = MLIM_VERTEX_BALL, .ball = b, .weight = balls->radii[b] * balls->radii[b]
     };
@@ -111,11 +85,11 @@ static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mli
 
 static mlim_status insert_known(mlim_refinement* r, const mlim_known* known, mlim_context* context)
 {
-  ordered_vertex* order = order_points(r, known->points, known->count);
+  mlim_placed* order = order_points(r, known->points, known->count);
   mlim_status status = order == NULL ? mlim_fail_memory(context, "the triangulation") : MLIM_OK;
   for (size_t k = 0; k < known->count && status == MLIM_OK; ++k)
   {
-    const size_t v = (size_t)order[k].vertex;
+    const size_t v = (size_t)order[k].id;
     mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = known->sheets[v] };
     int is_hidden;
     mlim_copy(known->points + 3 * v, vertex.point);
@@ -168,31 +142,6 @@ void mlim_refine_free(mlim_refinement* refinement)
 
 /* ---- the loop ---- */
 
-static int is_wanted(const mlim_refinement* r, mlim_badness badness)
-{
-  return badness < (r->goal == MLIM_GOAL_TOPOLOGY ? MLIM_BAD_SIZE : MLIM_BAD_NONE);
-}
-
-/* Queues a record if it is bad and can be mended. Its verdict never changes by what is inserted round
-   it: once is enough. */
-static int enqueue(mlim_refinement* r, int32_t record)
-{
-  mlim_facet* facet = &r->complex.facets[record];
-  if (!facet->is_alive || facet->is_judged)
-  {
-    return 0;
-  }
-  facet->is_judged = 1;
-  const mlim_verdict verdict = mlim_criteria_judge(&r->complex, r->options, facet);
-  if (!is_wanted(r, verdict.badness) ||
-      !mlim_criteria_may_insert(&r->complex, r->options, facet, verdict.badness))
-  {
-    return 0;
-  }
-  return mlim_queue_push(
-    &r->queue, mlim_queue_bin_of(verdict.badness, verdict.excess), &r->complex, record);
-}
-
 mlim_status mlim_refine_ask(
   mlim_refinement* refinement, int32_t record, mlim_context* context, int* is_taken)
 {
@@ -203,35 +152,6 @@ mlim_status mlim_refine_ask(
                         complex, record)
            ? mlim_fail_memory(context, "the queue of facets")
            : MLIM_OK;
-}
-
-static mlim_status enqueue_all(mlim_refinement* r, mlim_context* context)
-{
-  for (size_t record = 1; record < r->complex.facet_count; ++record)
-  {
-    if (enqueue(r, (int32_t)record))
-    {
-      return mlim_fail_memory(context, "the queue of facets");
-    }
-    const mlim_status status = record % JUDGE_EVERY == 0 ? mlim_refine_report(r, context) : MLIM_OK;
-    if (status != MLIM_OK)
-    {
-      return status;
-    }
-  }
-  return MLIM_OK;
-}
-
-static mlim_status enqueue_fresh(mlim_refinement* r, mlim_context* context)
-{
-  for (size_t k = 0; k < r->complex.fresh_count; ++k)
-  {
-    if (enqueue(r, r->complex.fresh[k]))
-    {
-      return mlim_fail_memory(context, "the queue of facets");
-    }
-  }
-  return MLIM_OK;
 }
 
 /* The partners of a vertex that was inserted just now. */
@@ -290,10 +210,10 @@ mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* contex
   return mlim_progress(context, MLIM_STAGE_SURFACE, r->progress);
 }
 
-static mlim_status update_and_enqueue(mlim_refinement* r, mlim_context* context)
+static mlim_status update_and_judge(mlim_refinement* r, mlim_context* context)
 {
   mlim_status status = mlim_refine_update(r, context);
-  status = status == MLIM_OK ? enqueue_fresh(r, context) : status;
+  status = status == MLIM_OK ? mlim_judge_fresh(r, context) : status;
   return status == MLIM_OK ? mlim_refine_report(r, context) : status;
 }
 
@@ -314,78 +234,10 @@ static mlim_status work_batch(mlim_refinement* r, mlim_badness badness, mlim_con
     status = insert_crossing(r, entry.record, context);
     if (status == MLIM_OK && r->complex.made_count >= UPDATE_EVERY)
     {
-      status = update_and_enqueue(r, context);
+      status = update_and_judge(r, context);
     }
   }
-  return status == MLIM_OK ? update_and_enqueue(r, context) : status;
-}
-
-/* Queues the facet of a failed star whose crossing is farthest from the vertex. */
-static int enqueue_star(mlim_refinement* r, int32_t vertex)
-{
-  const mlim_complex* complex = &r->complex;
-  int32_t best = 0;
-  double most = -1;
-  for (size_t k = 0; k < r->star.facet_count; ++k)
-  {
-    const mlim_facet* facet = &complex->facets[r->star.facets[k]];
-    const double d = mlim_distance_squared(facet->crossing, complex->vertices[vertex].point);
-    if (d > most && mlim_criteria_may_insert(complex, r->options, facet, MLIM_BAD_DISK))
-    {
-      most = d;
-      best = r->star.facets[k];
-    }
-  }
-  return best == 0 ? 0
-                   : mlim_queue_push(&r->queue, mlim_queue_bin_of(MLIM_BAD_DISK, 1), complex, best);
-}
-
-/* Not a failure: the vertex's is_broken is up to date, its star is in r->star. */
-static mlim_status check_disk(mlim_refinement* r, int32_t vertex, mlim_context* context)
-{
-  mlim_disk disk;
-  const mlim_status status =
-    mlim_disk_check(&r->complex, &r->links, vertex, &r->star, context, &disk);
-  r->complex.vertices[vertex].is_dirty = 0;
-  r->complex.vertices[vertex].is_broken = disk == MLIM_DISK_FAILS;
-  return status;
-}
-
-/* Checks the vertices whose stars have changed, neighbours one after the other: their stars share
-   cells. */
-static mlim_status check_disks(mlim_refinement* r, mlim_context* context)
-{
-  mlim_complex* complex = &r->complex;
-  ordered_vertex* order = mlim_allocate(complex->dirty_count, sizeof *order);
-  if (order == NULL)
-  {
-    return mlim_fail_memory(context, "the order of the vertices");
-  }
-  for (size_t k = 0; k < complex->dirty_count; ++k)
-  {
-    const int32_t vertex = complex->dirty[k];
-    order[k] =
-      (ordered_vertex){ .place = mlim_queue_place(&r->queue, complex->vertices[vertex].point),
-        .vertex = vertex };
-  }
-  sort_along_curve(order, complex->dirty_count);
-  mlim_status status = MLIM_OK;
-  for (size_t k = 0; k < complex->dirty_count && status == MLIM_OK; ++k)
-  {
-    status = check_disk(r, order[k].vertex, context);
-    if (status == MLIM_OK && complex->vertices[order[k].vertex].is_broken &&
-        enqueue_star(r, order[k].vertex))
-    {
-      status = mlim_fail_memory(context, "the queue of facets");
-    }
-    if (status == MLIM_OK && k % LOOK_EVERY_DISKS == LOOK_EVERY_DISKS - 1)
-    {
-      status = mlim_refine_report(r, context);
-    }
-  }
-  mlim_release(order);
-  complex->dirty_count = 0;
-  return status;
+  return status == MLIM_OK ? update_and_judge(r, context) : status;
 }
 
 /* Another goal judges other things. */
@@ -403,7 +255,7 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
   mlim_refinement* r = refinement;
   set_goal(r, goal);
   mlim_status status = mlim_refine_update(r, context);
-  status = status == MLIM_OK ? enqueue_all(r, context) : status;
+  status = status == MLIM_OK ? mlim_judge_all(r, context) : status;
   /* Each round inserts at least one point or is the last, and the vertex limit bounds the points. */
   while (status == MLIM_OK)
   {
@@ -414,7 +266,7 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
     }
     else if (r->complex.dirty_count > 0)
     {
-      status = check_disks(r, context);
+      status = mlim_disks_check(r, context);
     }
     else
     {
@@ -435,23 +287,4 @@ void mlim_refine_tighten(mlim_refinement* refinement, const unsigned char* is_ti
       facet->is_judged = 0;
     }
   }
-}
-
-/* ---- what is left ---- */
-
-mlim_status mlim_refine_settle_disks(
-  mlim_refinement* refinement, double done, mlim_context* context)
-{
-  mlim_complex* complex = &refinement->complex;
-  mlim_status status = MLIM_OK;
-  for (size_t k = 0; k < complex->dirty_count && status == MLIM_OK; ++k)
-  {
-    status = check_disk(refinement, complex->dirty[k], context);
-    if (status == MLIM_OK && k % LOOK_EVERY_DISKS == 0)
-    {
-      status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, done);
-    }
-  }
-  complex->dirty_count = 0;
-  return status;
 }

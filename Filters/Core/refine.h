@@ -54,9 +54,4 @@ mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* contex
    judged again at the next run. */
 void mlim_refine_tighten(mlim_refinement* refinement, const unsigned char* is_tightened);
 
-/* Looks again at the vertices whose stars have changed, so that is_broken tells of every vertex whether
-   it fails the disk condition. `done` is reported as the share of the certificate's stage. */
-mlim_status mlim_refine_settle_disks(
-  mlim_refinement* refinement, double done, mlim_context* context);
-
 #endif

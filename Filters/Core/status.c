@@ -92,14 +92,15 @@ void mlim_parallel_for(mlim_context* context, size_t count, mlim_body body, void
 
 typedef struct piece
 {
-  const mlim_stage_work* work;
+  mlim_body body;
+  void* job;
   size_t first;
 } piece;
 
 static void piece_body(void* data, size_t begin, size_t end)
 {
   const piece* p = (const piece*)data;
-  p->work->body(p->work->job, p->first + begin, p->first + end);
+  p->body(p->job, p->first + begin, p->first + end);
 }
 
 mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* work)
@@ -113,9 +114,24 @@ mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* wo
   for (size_t first = 0; first < work->count && status == MLIM_OK; first += step)
   {
     const size_t count = work->count - first < step ? work->count - first : step;
-    mlim_parallel_for(context, count, piece_body, &(piece){ .work = work, .first = first });
+    mlim_parallel_for(
+      context, count, piece_body, &(piece){ .body = work->body, .job = work->job, .first = first });
     const double share = (double)(first + count) / (double)work->count;
     status = mlim_progress(context, work->stage, work->from + share * (work->to - work->from));
+  }
+  return status;
+}
+
+mlim_status mlim_parallel_batches(mlim_context* context, const mlim_batches* batches)
+{
+  const mlim_batches* b = batches;
+  mlim_status status = MLIM_OK;
+  for (size_t first = 0; first < b->count && status == MLIM_OK; first += b->size)
+  {
+    const size_t count = b->count - first < b->size ? b->count - first : b->size;
+    mlim_parallel_for(count > b->few ? context : NULL, count, piece_body,
+      &(piece){ .body = b->body, .job = b->job, .first = first });
+    status = b->finish(b->job, first, first + count, context);
   }
   return status;
 }

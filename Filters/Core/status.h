@@ -33,4 +33,17 @@ typedef struct mlim_stage_work
 
 mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* work);
 
+/* What has to be done in order is prepared in parallel: body runs on a batch of at most `size` of the
+   `count` items, `finish` then on the same, on this thread, before the next batch. Both count from 0 over
+   all. A batch of no more than `few` items is not shared among threads. A finish that fails ends it. */
+typedef struct mlim_batches
+{
+  size_t count, size, few;
+  mlim_body body;
+  mlim_status (*finish)(void* job, size_t begin, size_t end, mlim_context* context);
+  void* job;
+} mlim_batches;
+
+mlim_status mlim_parallel_batches(mlim_context* context, const mlim_batches* batches);
+
 #endif

@@ -1,6 +1,7 @@
 #include "tidy.h"
 
 #include "memory.h"
+#include "refine_disks.h"
 #include "sides.h"
 #include "status.h"
 #include "triangle.h"
@@ -441,7 +442,7 @@ static mlim_status mend_from(tidier* t, int32_t vertex, size_t* changed)
 static mlim_status mend_disks(tidier* t, size_t* changed)
 {
   const mlim_complex* complex = &t->refinement->complex;
-  mlim_status status = mlim_refine_settle_disks(t->refinement, 0, t->context);
+  mlim_status status = mlim_disks_settle(t->refinement, 0, t->context);
   for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count && status == MLIM_OK; ++v)
   {
     if (complex->vertices[v].is_broken || complex->vertices[v].is_dirty)

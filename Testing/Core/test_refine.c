@@ -2,6 +2,7 @@
 #include "audit.h"
 #include "mesh.h"
 #include "refine.h"
+#include "refine_disks.h"
 #include "seeds.h"
 #include "shapes.h"
 
@@ -22,7 +23,7 @@ static mlim_status run_shape(int kind, const mlim_options* options, run* out)
 static void check_disks(mlim_refinement* refinement)
 {
   mlim_complex* complex = &refinement->complex;
-  CHECK(mlim_refine_settle_disks(refinement, 0, NULL) == MLIM_OK);
+  CHECK(mlim_disks_settle(refinement, 0, NULL) == MLIM_OK);
   for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count; ++v)
   {
     mlim_disk disk;

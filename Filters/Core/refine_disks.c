@@ -1,0 +1,120 @@
+#include "refine_disks.h"
+
+#include "memory.h"
+#include "status.h"
+#include "vector.h"
+
+#include <stdlib.h>
+
+enum
+{
+  BATCH = 4096, /* vertices between two looks at the host, about 3 ms */
+  FEW = 256     /* vertices that are not worth waking a thread for */
+};
+
+typedef struct disks
+{
+  mlim_refinement* refinement;
+  mlim_placed* order;
+  int is_queueing;
+  double done; /* of the certificate's stage, unless queueing */
+  unsigned char has_memory[BATCH];
+  unsigned char fails[BATCH];
+} disks;
+
+static void check_body(void* data, size_t begin, size_t end)
+{
+  disks* d = (disks*)data;
+  const mlim_refinement* r = d->refinement;
+  mlim_star star = { 0 };
+  for (size_t k = begin; k < end; ++k)
+  {
+    mlim_disk disk;
+    d->has_memory[k % BATCH] =
+      mlim_disk_check(&r->complex, &r->links, d->order[k].id, &star, NULL, &disk) == MLIM_OK;
+    d->fails[k % BATCH] = disk == MLIM_DISK_FAILS;
+  }
+  mlim_star_free(&star);
+}
+
+/* Queues the facet of a failed star whose crossing is farthest from the vertex. */
+static mlim_status queue_star(mlim_refinement* r, int32_t vertex, mlim_context* context)
+{
+  const mlim_complex* complex = &r->complex;
+  mlim_disk disk;
+  const mlim_status status = mlim_disk_check(complex, &r->links, vertex, &r->star, context, &disk);
+  int32_t best = 0;
+  double most = -1;
+  for (size_t k = 0; status == MLIM_OK && k < r->star.facet_count; ++k)
+  {
+    const mlim_facet* facet = &complex->facets[r->star.facets[k]];
+    const double d = mlim_distance_squared(facet->crossing, complex->vertices[vertex].point);
+    if (d > most && mlim_criteria_may_insert(complex, r->options, facet, MLIM_BAD_DISK))
+    {
+      most = d;
+      best = r->star.facets[k];
+    }
+  }
+  return best > 0 && mlim_queue_push(&r->queue, mlim_queue_bin_of(MLIM_BAD_DISK, 1), complex, best)
+           ? mlim_fail_memory(context, "the queue of facets")
+           : status;
+}
+
+static mlim_status note(void* data, size_t begin, size_t end, mlim_context* context)
+{
+  const disks* d = (const disks*)data;
+  mlim_refinement* r = d->refinement;
+  mlim_status status = MLIM_OK;
+  for (size_t k = begin; k < end && status == MLIM_OK; ++k)
+  {
+    const int fails = d->fails[k % BATCH];
+    mlim_vertex* vertex = &r->complex.vertices[d->order[k].id];
+    vertex->is_dirty = 0;
+    vertex->is_broken = (unsigned char)fails;
+    status = !d->has_memory[k % BATCH] ? mlim_fail_memory(context, "a vertex's star")
+             : fails && d->is_queueing ? queue_star(r, d->order[k].id, context)
+                                       : MLIM_OK;
+  }
+  return status != MLIM_OK ? status
+         : d->is_queueing  ? mlim_refine_report(r, context)
+                           : mlim_progress(context, MLIM_STAGE_CERTIFICATE, d->done);
+}
+
+/* Neighbours one after the other: their stars share cells. */
+static mlim_status check(disks* d, mlim_context* context)
+{
+  mlim_complex* complex = &d->refinement->complex;
+  d->order = mlim_allocate(complex->dirty_count, sizeof *d->order);
+  if (d->order == NULL)
+  {
+    return mlim_fail_memory(context, "the order of the vertices");
+  }
+  for (size_t k = 0; k < complex->dirty_count; ++k)
+  {
+    const int32_t vertex = complex->dirty[k];
+    const double* point = complex->vertices[vertex].point;
+    d->order[k] =
+      (mlim_placed){ .place = mlim_queue_place(&d->refinement->queue, point), .id = vertex };
+  }
+  mlim_queue_sort(d->order, complex->dirty_count);
+  const mlim_status status =
+    mlim_parallel_batches(context, &(mlim_batches){ .count = complex->dirty_count,
+                                     .size = BATCH,
+                                     .few = FEW,
+                                     .body = check_body,
+                                     .finish = note,
+                                     .job = d });
+  mlim_release(d->order);
+  complex->dirty_count = 0;
+  return status;
+}
+
+mlim_status mlim_disks_check(mlim_refinement* refinement, mlim_context* context)
+{
+  return check(&(disks){ .refinement = refinement, .is_queueing = 1 }, context);
+}
+
+mlim_status mlim_disks_settle(mlim_refinement* refinement, double done, mlim_context* context)
+{
+  return check(&(disks){ .refinement = refinement, .done = done }, context);
+}
