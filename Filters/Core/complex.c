@@ -11,6 +11,7 @@
 enum
 {
   MAX_CROSSINGS = 16,     /* on one dual; more of them change nothing: it is refined anyway */
+  LABEL_BATCH = 64,       /* cells labelled together */
   LOOK_EVERY_CELLS = 4096 /* cells between two looks at the host: about 20 ms */
 };
 
@@ -54,8 +55,6 @@ void mlim_complex_free(mlim_complex* complex)
   mlim_delaunay_free(complex->delaunay);
   mlim_release(complex->distance_shares);
   mlim_release(complex->vertices);
-  mlim_release(complex->cells);
-  mlim_release(complex->centers);
   mlim_release(complex->facets);
   mlim_release(complex->free_facets);
   mlim_release(complex->fresh);
@@ -295,59 +294,55 @@ static int record_facet(mlim_complex* complex, int32_t cell, int index)
 
 /* ---- insertion ---- */
 
-int mlim_complex_reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
+void mlim_complex_borrow_cells(mlim_complex* complex)
 {
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    const size_t needed = (size_t)made->cells[k].id + 1;
-    if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells) ||
-        mlim_reserve(
-          &complex->centers, &complex->center_capacity, 3 * needed, sizeof *complex->centers))
-    {
-      return 1;
-    }
-    for (; complex->cell_count < needed; ++complex->cell_count)
-    {
-      complex->cells[complex->cell_count] = (mlim_cell){ .vertices = { -1, -1, -1, -1 } };
-    }
-  }
-  return 0;
+  const mlim_delaunay_cells all = mlim_delaunay_all(complex->delaunay);
+  complex->cells = all.cells;
+  complex->spheres = all.spheres;
+  complex->cell_count = all.count;
 }
 
-void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* made)
+void mlim_complex_take_cell(mlim_complex* complex, int32_t cell)
 {
-  mlim_cell* cell = &complex->cells[made->id];
-  *cell = (mlim_cell){ .label = 0 };
   for (int k = 0; k < 4; ++k)
   {
-    cell->vertices[k] = made->vertices[k];
-    cell->neighbors[k] = made->neighbors[k];
-    complex->vertices[made->vertices[k]].cell = made->id;
+    complex->vertices[complex->cells[cell].vertices[k]].cell = cell;
   }
-  mlim_copy(made->center, complex->centers + 3 * (size_t)made->id);
 }
 
-static void take_and_label(mlim_complex* complex, const mlim_delaunay_cells* made)
+static void take_and_label(mlim_complex* complex, const int32_t* made, size_t made_count)
 {
-  enum
+  mlim_field_look looks[LABEL_BATCH];
+  for (size_t begin = 0; begin < made_count; begin += LABEL_BATCH)
   {
-    BATCH = 64
-  };
-  mlim_field_look looks[BATCH];
-  for (size_t begin = 0; begin < made->count; begin += BATCH)
-  {
-    const size_t count = made->count - begin < BATCH ? made->count - begin : BATCH;
+    const size_t count = made_count - begin < LABEL_BATCH ? made_count - begin : LABEL_BATCH;
     for (size_t k = 0; k < count; ++k)
     {
-      looks[k].point = made->cells[begin + k].center;
+      looks[k].point = mlim_complex_center(complex, made[begin + k]);
     }
     mlim_field_look_at(complex->oracle.field, looks, count);
     for (size_t k = 0; k < count; ++k)
     {
-      mlim_complex_take_cell(complex, &made->cells[begin + k]);
-      mlim_cell* cell = &complex->cells[made->cells[begin + k].id];
+      mlim_complex_take_cell(complex, made[begin + k]);
+      mlim_cell* cell = &complex->cells[made[begin + k]];
       cell->label = looks[k].label;
       cell->clearance = looks[k].clearance;
+    }
+  }
+}
+
+static void take_and_label_all(mlim_complex* complex)
+{
+  int32_t alive[LABEL_BATCH];
+  size_t count = 0;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    alive[count] = (int32_t)c;
+    count += complex->cells[c].vertices[0] >= 0;
+    if (count == LABEL_BATCH || c + 1 == complex->cell_count)
+    {
+      take_and_label(complex, alive, count);
+      count = 0;
     }
   }
 }
@@ -408,10 +403,6 @@ static void empty_zone(mlim_complex* complex)
         (unsigned char)index_apart(&complex->cells[other], &complex->cells[id]);
     }
   }
-  for (size_t c = 0; c < complex->zone.count; ++c)
-  {
-    complex->cells[complex->zone.cells[c]].vertices[0] = -1;
-  }
 }
 
 /* A facet between a new cell and one outside the zone: its record holds unless labels contradict. */
@@ -420,7 +411,6 @@ static int inherit_facet(mlim_complex* complex, int32_t cell, int index)
   mlim_cell* a = &complex->cells[cell];
   mlim_cell* b = &complex->cells[a->neighbors[index]];
   const int j = index_apart(b, a);
-  b->neighbors[j] = cell;
   const int32_t record = b->facets[j];
   const int differs = a->label != b->label;
   if (record == 0)
@@ -441,12 +431,12 @@ static int inherit_facet(mlim_complex* complex, int32_t cell, int index)
   return facet->is_multiple || differs ? record_facet(complex, cell, index) : 0;
 }
 
-static int update_cells(mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex)
+static int update_cells(mlim_complex* complex, const mlim_delaunay_zone* made, int32_t vertex)
 {
   int failed = 0;
   for (size_t k = 0; k < made->count && !failed; ++k)
   {
-    const int32_t id = made->cells[k].id;
+    const int32_t id = made->cells[k];
     for (int i = 0; i < 4; ++i)
     {
       if (complex->cells[id].vertices[i] == vertex &&
@@ -458,7 +448,7 @@ static int update_cells(mlim_complex* complex, const mlim_delaunay_cells* made, 
   }
   for (size_t k = 0; k < made->count && !failed; ++k)
   {
-    const int32_t id = made->cells[k].id;
+    const int32_t id = made->cells[k];
     for (int i = 0; i < 4; ++i)
     {
       if (complex->cells[id].vertices[i] != vertex && id < complex->cells[id].neighbors[i])
@@ -495,18 +485,15 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   complex->vertices[vertex] = complex->pending;
   complex->vertices[vertex].is_dirty = 0;
   complex->vertices[vertex].is_broken = 0;
-  mlim_delaunay_cells made;
+  mlim_delaunay_zone made;
   const mlim_status status =
     mlim_delaunay_fill(complex->delaunay, context, is_recorded ? &made : NULL);
   if (status != MLIM_OK || !is_recorded)
   {
     return status;
   }
-  if (mlim_complex_reserve_cells(complex, &made))
-  {
-    return mlim_fail_memory(context, "the triangulation");
-  }
-  take_and_label(complex, &made);
+  mlim_complex_borrow_cells(complex);
+  take_and_label(complex, made.cells, made.count);
   if (update_cells(complex, &made, vertex))
   {
     return mlim_fail_memory(context, "the restricted facets");
@@ -516,33 +503,25 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
 
 mlim_status mlim_complex_record_all(mlim_complex* complex, double done, mlim_context* context)
 {
-  mlim_delaunay_cells all;
-  mlim_status status = mlim_delaunay_all(complex->delaunay, context, &all);
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
-  if (mlim_complex_reserve_cells(complex, &all))
-  {
-    return mlim_fail_memory(context, "the triangulation");
-  }
-  take_and_label(complex, &all);
+  mlim_complex_borrow_cells(complex);
+  take_and_label_all(complex);
   complex->fresh_count = 0;
   for (size_t v = 0; v < complex->vertex_count; ++v)
   {
     mark_dirty(complex, (int32_t)v); /* a ball without any facet fails too */
   }
-  for (size_t k = 0; k < all.count; ++k)
+  const int32_t count = (int32_t)complex->cell_count;
+  for (int32_t id = 0; id < count; ++id)
   {
-    const int32_t id = all.cells[k].id;
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 4 && complex->cells[id].vertices[0] >= 0; ++i)
     {
       if (id < complex->cells[id].neighbors[i] && record_facet(complex, id, i))
       {
         return mlim_fail_memory(context, "the restricted facets");
       }
     }
-    status = k % LOOK_EVERY_CELLS == 0 ? mlim_progress(context, MLIM_STAGE_SURFACE, done) : MLIM_OK;
+    const mlim_status status =
+      id % LOOK_EVERY_CELLS == 0 ? mlim_progress(context, MLIM_STAGE_SURFACE, done) : MLIM_OK;
     if (status != MLIM_OK)
     {
       return status;
