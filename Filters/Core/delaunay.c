@@ -377,8 +377,24 @@ static inline void add_border(mlim_delaunay* d, const mlim_cell* cell, int32_t i
     {
       d->places[v] = (int32_t)d->around_count;
       d->around[d->around_count++] = v;
+      mlim_prefetch(&d->vertices[v]); /* for the spheres of the new cells */
     }
     facet->places[k] = d->places[v];
+  }
+}
+
+/* Sends for the neighbours of a cell, which are about to be looked at: the search waits for memory most of
+   the time. */
+static inline void fetch_neighbors(const mlim_delaunay* d, int32_t id)
+{
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t n = d->cells[id].neighbors[k];
+    if (n != MLIM_NO_CELL)
+    {
+      mlim_prefetch(&d->cells[n]);
+      mlim_prefetch(&d->spheres[n]);
+    }
   }
 }
 
@@ -412,8 +428,11 @@ static mlim_status visit(mlim_delaunay* d, int32_t id, mlim_context* context, in
         return status;
       }
       other->seen = d->stamp + (uint32_t)is_hit;
-      d->zone[d->zone_count] = n;
-      d->zone_count += (size_t)is_hit;
+      if (is_hit)
+      {
+        d->zone[d->zone_count++] = n;
+        fetch_neighbors(d, n);
+      }
     }
     if (other->seen == d->stamp)
     {
@@ -447,6 +466,7 @@ static mlim_status collect(mlim_delaunay* d, int32_t start, mlim_context* contex
   }
   d->zone[d->zone_count++] = start;
   d->cells[start].seen = d->stamp + 1;
+  fetch_neighbors(d, start);
   int is_inside = 1;
   for (size_t z = 0; z < d->zone_count && is_inside; ++z)
   {
