@@ -26,7 +26,7 @@ order='
 4 oracle        oracle crossings
 4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         radius_map span balls
-5 triangulation power_sphere delaunay
+5 triangulation power_sphere predicates delaunay
 6 criteria      complex records sides criteria disk
 7 refinement    queue seeds known bends wedge partner refine tidy pinch spots zone box cells
 8 products      volumes edges skin nearest mesh quality certificate
@@ -132,7 +132,7 @@ check_libraries() {
     "$core"/*.c "$core"/*.h Filters/Delaunay/*
   forbid "CGAL" 'CGAL' "$core"/*.c "$core"/*.h Filters/vtk*.h Filters/vtk*.cxx
   sees_only mlim.h Filters/vtk*.h Filters/vtk*.cxx
-  sees_only "delaunay.h power_sphere.h status.h" Filters/Delaunay/*
+  sees_only "predicates.h status.h" Filters/Delaunay/*
   if compgen -G "$core/*.cxx" >/dev/null || compgen -G "$core/*.cpp" >/dev/null; then
     fail "C++ in $core"
   fi

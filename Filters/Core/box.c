@@ -45,12 +45,12 @@ static mlim_status insert(filler* f, const double point[3], double distance, int
   {
     return status;
   }
-  mlim_delaunay_cells made;
-  status = mlim_zone_fill(complex, &zone, point, demand.label, f->context, &made);
+  mlim_delaunay_zone made;
+  status = mlim_zone_fill(complex, point, demand.label, f->context, &made);
   if (status == MLIM_OK)
   {
     *is_there = 1;
-    f->near = made.cells[0].id;
+    f->near = made.cells[0];
   }
   return status;
 }

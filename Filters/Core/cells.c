@@ -143,12 +143,12 @@ static int reserve_generations(cells* c)
 static mlim_status fill(
   cells* c, const mlim_delaunay_zone* zone, const double point[3], int32_t label)
 {
-  mlim_delaunay_cells made;
+  mlim_delaunay_zone made;
   for (size_t k = 0; k < zone->count; ++k)
   {
     ++c->generations[zone->cells[k]];
   }
-  const mlim_status status = mlim_zone_fill(c->complex, zone, point, label, c->context, &made);
+  const mlim_status status = mlim_zone_fill(c->complex, point, label, c->context, &made);
   if (status != MLIM_OK)
   {
     return status;
@@ -157,7 +157,7 @@ static mlim_status fill(
   int failed = reserve_generations(c);
   for (size_t k = 0; k < made.count && !failed; ++k)
   {
-    failed = enqueue(c, made.cells[k].id);
+    failed = enqueue(c, made.cells[k]);
   }
   return failed ? mlim_fail_memory(c->context, "the queue of cells") : MLIM_OK;
 }

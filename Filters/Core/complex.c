@@ -48,8 +48,6 @@ void mlim_complex_free(mlim_complex* complex)
   mlim_delaunay_free(complex->delaunay);
   mlim_release(complex->distance_shares);
   mlim_release(complex->vertices);
-  mlim_release(complex->cells);
-  mlim_release(complex->centers);
   mlim_release(complex->facets);
   mlim_release(complex->free_facets);
   mlim_release(complex->fresh);
@@ -167,36 +165,20 @@ void mlim_complex_kill_record(mlim_complex* complex, int32_t record)
 
 /* ---- insertion ---- */
 
-int mlim_complex_reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
+void mlim_complex_borrow_cells(mlim_complex* complex)
 {
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    const size_t needed = (size_t)made->cells[k].id + 1;
-    if (mlim_reserve(&complex->cells, &complex->cell_capacity, needed, sizeof *complex->cells) ||
-        mlim_reserve(
-          &complex->centers, &complex->center_capacity, 3 * needed, sizeof *complex->centers))
-    {
-      return 1;
-    }
-    for (; complex->cell_count < needed; ++complex->cell_count)
-    {
-      complex->cells[complex->cell_count] = (mlim_cell){ .vertices = { -1, -1, -1, -1 } };
-    }
-  }
-  return 0;
+  const mlim_delaunay_cells all = mlim_delaunay_all(complex->delaunay);
+  complex->cells = all.cells;
+  complex->spheres = all.spheres;
+  complex->cell_count = all.count;
 }
 
-void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* made)
+void mlim_complex_take_cell(mlim_complex* complex, int32_t cell)
 {
-  mlim_cell* cell = &complex->cells[made->id];
-  *cell = (mlim_cell){ .label = 0 };
   for (int k = 0; k < 4; ++k)
   {
-    cell->vertices[k] = made->vertices[k];
-    cell->neighbors[k] = made->neighbors[k];
-    complex->vertices[made->vertices[k]].cell = made->id;
+    complex->vertices[complex->cells[cell].vertices[k]].cell = cell;
   }
-  mlim_copy(made->center, complex->centers + 3 * (size_t)made->id);
 }
 
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
@@ -255,49 +237,25 @@ static void empty_zone(mlim_complex* complex)
         (unsigned char)mlim_complex_index_apart(&complex->cells[other], &complex->cells[id]);
     }
   }
-  for (size_t c = 0; c < complex->zone.count; ++c)
-  {
-    complex->cells[complex->zone.cells[c]].vertices[0] = -1;
-  }
 }
 
-/* The cells that the triangulation has made, without labels for now. Records of the facets round them pass
-   over from the cells outside. Returns 1 when out of memory. */
-static int take_cells(mlim_complex* complex, const mlim_delaunay_cells* made)
+/* A new cell has no label for now, and the records that the cells outside have. Room in `made` is there. */
+static void take_new_cell(mlim_complex* complex, int32_t id)
 {
-  if (mlim_complex_reserve_cells(complex, made) ||
-      mlim_reserve(&complex->made, &complex->made_capacity, complex->made_count + made->count,
-        sizeof *complex->made))
-  {
-    return 1;
-  }
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    mlim_complex_take_cell(complex, &made->cells[k]);
-    complex->cells[made->cells[k].id].label = MLIM_NO_LABEL;
-    complex->made[complex->made_count++] = made->cells[k].id;
-  }
-  return 0;
+  mlim_complex_take_cell(complex, id);
+  mlim_cell* cell = &complex->cells[id];
+  cell->label = MLIM_NO_LABEL;
+  complex->made[complex->made_count++] = id;
 }
 
-static void join_outside(mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex)
+/* The record of the facet opposite to the new vertex goes over from the cell outside. */
+static void inherit_record(mlim_complex* complex, int32_t id)
 {
-  for (size_t k = 0; k < made->count; ++k)
+  mlim_cell* cell = &complex->cells[id];
+  if (cell->neighbors[0] != MLIM_NO_CELL)
   {
-    const int32_t id = made->cells[k].id;
-    mlim_cell* cell = &complex->cells[id];
-    int i = 0;
-    while (cell->vertices[i] != vertex)
-    {
-      ++i;
-    }
-    if (cell->neighbors[i] != MLIM_NO_CELL)
-    {
-      mlim_cell* outside = &complex->cells[cell->neighbors[i]];
-      const int j = mlim_complex_index_apart(outside, cell);
-      outside->neighbors[j] = id;
-      cell->facets[i] = outside->facets[j];
-    }
+    const mlim_cell* outside = &complex->cells[cell->neighbors[0]];
+    cell->facets[0] = outside->facets[mlim_complex_index_apart(outside, cell)];
   }
 }
 
@@ -325,32 +283,41 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   complex->vertices[vertex] = complex->pending;
   complex->vertices[vertex].is_dirty = 0;
   complex->vertices[vertex].is_broken = 0;
-  mlim_delaunay_cells made;
+  mlim_delaunay_zone made;
   const mlim_status status =
     mlim_delaunay_fill(complex->delaunay, context, is_recorded ? &made : NULL);
   if (status != MLIM_OK || !is_recorded)
   {
     return status;
   }
-  if (take_cells(complex, &made))
+  mlim_complex_borrow_cells(complex);
+  if (mlim_reserve(&complex->made, &complex->made_capacity, complex->made_count + made.count,
+        sizeof *complex->made))
   {
     return mlim_fail_memory(context, "the triangulation");
   }
-  join_outside(complex, &made, vertex);
+  for (size_t k = 0; k < made.count; ++k)
+  {
+    take_new_cell(complex, made.cells[k]);
+    inherit_record(complex, made.cells[k]);
+  }
   return MLIM_OK;
 }
 
 mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context)
 {
-  mlim_delaunay_cells all;
-  const mlim_status status = mlim_delaunay_all(complex->delaunay, context, &all);
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
-  if (take_cells(complex, &all))
+  mlim_complex_borrow_cells(complex);
+  if (mlim_reserve(
+        &complex->made, &complex->made_capacity, complex->cell_count, sizeof *complex->made))
   {
     return mlim_fail_memory(context, "the triangulation");
+  }
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    if (complex->cells[c].vertices[0] >= 0)
+    {
+      take_new_cell(complex, (int32_t)c);
+    }
   }
   for (size_t v = 0; v < complex->vertex_count; ++v)
   {

@@ -47,17 +47,6 @@ typedef struct mlim_vertex
   unsigned char is_broken; /* its disk failed at the last look */
 } mlim_vertex;
 
-/* 64 bytes: what a walk from cell to cell needs is in one line of the cache, in whose size the time goes. */
-typedef struct mlim_cell
-{
-  _Alignas(16) int32_t vertices[4];
-  int32_t neighbors[4];
-  int32_t label;
-  uint32_t mark;
-  float clearance;   /* mlim_field_look at the centre */
-  int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
-} mlim_cell;
-
 typedef struct mlim_facet
 {
   double crossing[3];  /* the farthest one from the facet's vertices */
@@ -79,10 +68,9 @@ typedef struct mlim_complex
   mlim_delaunay* delaunay;
   mlim_vertex* vertices;
   size_t vertex_count, vertex_capacity;
-  mlim_cell* cells;
-  double* centers;                  /* power centre of each cell, 3 each */
-  size_t cell_count, cell_capacity; /* ids ever used; dead ones have vertices[0] < 0 */
-  size_t center_capacity;
+  mlim_cell* cells; /* borrowed from the triangulation, once all is recorded; dead ones too */
+  const mlim_power_sphere* spheres; /* of the cells, also borrowed */
+  size_t cell_count;
   mlim_facet* facets; /* record 0 is none */
   size_t facet_count, facet_capacity;
   int32_t* free_facets;
@@ -122,10 +110,10 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
    them to the triangulation. */
 mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context);
 
-/* Room for cells that the triangulation has made (not 0: out of memory), and a cell's place in it, without
-   records; its label is 0 at first. For what goes in without being recorded: the inside of volumes. */
-int mlim_complex_reserve_cells(mlim_complex* complex, const mlim_delaunay_cells* made);
-void mlim_complex_take_cell(mlim_complex* complex, const mlim_delaunay_cell* made);
+/* Borrows the cells anew after an insertion, and notes one of them with its vertices. Its label is 0 at first.
+   For what goes in without being recorded: the inside of volumes. */
+void mlim_complex_borrow_cells(mlim_complex* complex);
+void mlim_complex_take_cell(mlim_complex* complex, int32_t cell);
 
 /* Notes that a vertex's star has changed; that of all vertices of a facet; that a cell's label was changed
    from outside, and with it the stars of its vertices. */
@@ -162,7 +150,7 @@ static inline int mlim_complex_index_apart(const mlim_cell* cell, const mlim_cel
 /* A cell's power centre. */
 static inline const double* mlim_complex_center(const mlim_complex* complex, int32_t cell)
 {
-  return complex->centers + 3 * (size_t)cell;
+  return complex->spheres[cell].center;
 }
 
 /* The face of the box in which facet `index` of a cell lies, -1 for one inside the box. */

@@ -2,11 +2,18 @@
 
    Cells and vertices have dense ids. Eight far vertices (ids 0 to 7) stand round the box, so that
    every point of the box and every cell's power centre that matters is inside; a neighbour beyond
-   them is MLIM_NO_CELL. The order of ids and cells depends on the order of insertions alone. */
+   them is MLIM_NO_CELL. The order of ids and cells depends on the order of insertions alone.
+
+   Where a point lies on the power sphere of a cell, the choice is made as if each vertex were lighter
+   than it is by an infinitesimal, of a higher order than those of all before it. So what ties with a new
+   point counts as not in conflict. The triangulation is then that of the lighter points, which are in
+   general position: the zone of a point is always star-shaped, and no flat cell is made, since a
+   facet in whose plane a point lies has both its cells in conflict with it or neither. */
 #ifndef mlim_delaunay_h
 #define mlim_delaunay_h
 
 #include "mlim.h"
+#include "power_sphere.h"
 
 enum
 {
@@ -16,6 +23,28 @@ enum
 
 typedef struct mlim_delaunay mlim_delaunay;
 
+/* A positively oriented tetrahedron, shared with the client. 64 bytes: what a walk from cell to cell needs
+   is in one line of the cache, in whose size the time goes. */
+typedef struct mlim_cell
+{
+  int32_t vertices[4];  /* vertices[0] < 0: a dead cell, with nothing else in it */
+  int32_t neighbors[4]; /* neighbour k is opposite to vertex k */
+  uint32_t seen;        /* the triangulation's own */
+  /* The client's. All 0 when the cell is made. */
+  uint32_t mark;
+  int32_t label;
+  float clearance;   /* mlim_field_look at the centre */
+  int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
+} mlim_cell;
+
+/* All cells by id, dead ones too. Of its sphere a dead cell has nothing. */
+typedef struct mlim_delaunay_cells
+{
+  size_t count;
+  mlim_cell* cells;
+  const mlim_power_sphere* spheres; /* centre: power centre (weighted circumcentre) */
+} mlim_delaunay_cells;
+
 /* Around the box [0, size]. */
 mlim_status mlim_delaunay_create(const double size[3], mlim_context* context, mlim_delaunay** out);
 void mlim_delaunay_free(mlim_delaunay* delaunay);
@@ -23,48 +52,33 @@ void mlim_delaunay_free(mlim_delaunay* delaunay);
 /* Positions of the far vertices. */
 void mlim_delaunay_far_vertex(const mlim_delaunay* delaunay, int32_t vertex, double out[3]);
 
-/* A cell that was made: a positively oriented tetrahedron. */
-typedef struct mlim_delaunay_cell
-{
-  int32_t id;
-  int32_t vertices[4];
-  int32_t neighbors[4]; /* neighbour k is opposite to vertex k */
-  double center[3];     /* power centre (weighted circumcentre) */
-} mlim_delaunay_cell;
+/* Borrowed until the next fill. */
+mlim_delaunay_cells mlim_delaunay_all(mlim_delaunay* delaunay);
 
-/* The cells of the new triangulation, borrowed until the next call. */
-typedef struct mlim_delaunay_cells
-{
-  size_t count;
-  const mlim_delaunay_cell* cells;
-} mlim_delaunay_cells;
-
-/* All cells there are, in ascending id. */
-mlim_status mlim_delaunay_all(
-  mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_cells* out);
-
-/* First half of an insertion: the cells that would die, borrowed until the next call. None if the
-   point would be hidden by others, or would hide one. `start`: a cell whose power sphere may hold
-   the point, or any cell near it, with is_near telling which. Nothing changes. */
-typedef enum mlim_delaunay_start
-{
-  MLIM_START_IN_CONFLICT, /* start is tried alone: no search */
-  MLIM_START_NEAR         /* the point is located from start on; MLIM_NO_CELL: from the last one */
-} mlim_delaunay_start;
-
+/* Ids of cells that fill a zone of space. Borrowed until the next call. */
 typedef struct mlim_delaunay_zone
 {
   size_t count;
   const int32_t* cells;
 } mlim_delaunay_zone;
 
+typedef enum mlim_delaunay_start
+{
+  MLIM_START_IN_CONFLICT, /* start is tried alone: no search */
+  MLIM_START_NEAR         /* the point is located from start on; MLIM_NO_CELL: from the last one */
+} mlim_delaunay_start;
+
+/* First half of an insertion: the cells that would die. None if the point would be hidden by others or
+   would hide one, or is not inside the hull of the far vertices. `start`: a cell whose power sphere may
+   hold the point, or any cell near it, with `kind` telling which. No cell changes. */
 mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], double weight,
   int32_t start, mlim_delaunay_start kind, mlim_context* context, mlim_delaunay_zone* out);
 
 /* Second half: inserts the point of the last find. Its vertex has the next id. Cells of the zone
-   are dead and their ids may be used again by the new cells, all of which have the new vertex.
-   out == NULL: the cells are not asked for, which saves the time for their centres. */
+   are dead and their ids may be used again by the new cells, which `out`, if it is not NULL, lists. All of
+   them have the new vertex, as vertices[0]. MLIM_OUT_OF_MEMORY: nothing has changed, or (where
+   exact arithmetic had none) centres are missing. */
 mlim_status mlim_delaunay_fill(
-  mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_cells* out);
+  mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_zone* out);
 
 #endif

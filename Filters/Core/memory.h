@@ -13,6 +13,16 @@ void* mlim_allocate_zeroed(size_t count, size_t size);
 
 void mlim_release(void* memory);
 
+/* Tells the processor that an address will be read soon. */
+static inline void mlim_prefetch(const void* memory)
+{
+#if defined(__GNUC__)
+  __builtin_prefetch(memory);
+#else
+  (void)memory;
+#endif
+}
+
 /* What mlim_reserve does when there is no room. */
 int mlim_grow(void* array, size_t* capacity, size_t needed, size_t size);
 

@@ -28,47 +28,18 @@ int mlim_zone_is_free(const mlim_complex* complex, const mlim_delaunay_zone* zon
   return zone->count > 0;
 }
 
-/* Tells the cell beyond the facet opposite to vertex `index` of its new neighbour. */
-static void link_outer(mlim_complex* complex, int32_t id, int index)
+static void take_cells(mlim_complex* complex, const mlim_delaunay_zone* made, int32_t label)
 {
-  const mlim_cell* cell = &complex->cells[id];
-  mlim_cell* outer = &complex->cells[cell->neighbors[index]];
-  for (int j = 0; j < 4; ++j)
+  mlim_complex_borrow_cells(complex);
+  for (size_t k = 0; k < made->count; ++k)
   {
-    const int32_t v = outer->vertices[j];
-    if (v != cell->vertices[(index + 1) & 3] && v != cell->vertices[(index + 2) & 3] &&
-        v != cell->vertices[(index + 3) & 3])
-    {
-      outer->neighbors[j] = id;
-      return;
-    }
+    mlim_complex_take_cell(complex, made->cells[k]);
+    complex->cells[made->cells[k]].label = label;
   }
 }
 
-static void take_cells(
-  mlim_complex* complex, const mlim_delaunay_cells* made, int32_t vertex, int32_t label)
-{
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    mlim_complex_take_cell(complex, &made->cells[k]);
-    complex->cells[made->cells[k].id].label = label;
-  }
-  for (size_t k = 0; k < made->count; ++k)
-  {
-    const int32_t id = made->cells[k].id;
-    for (int i = 0; i < 4; ++i)
-    {
-      if (complex->cells[id].vertices[i] == vertex &&
-          complex->cells[id].neighbors[i] != MLIM_NO_CELL)
-      {
-        link_outer(complex, id, i);
-      }
-    }
-  }
-}
-
-mlim_status mlim_zone_fill(mlim_complex* complex, const mlim_delaunay_zone* zone,
-  const double point[3], int32_t label, mlim_context* context, mlim_delaunay_cells* made)
+mlim_status mlim_zone_fill(mlim_complex* complex, const double point[3], int32_t label,
+  mlim_context* context, mlim_delaunay_zone* made)
 {
   if (complex->vertex_count >= complex->vertex_limit)
   {
@@ -81,21 +52,13 @@ mlim_status mlim_zone_fill(mlim_complex* complex, const mlim_delaunay_zone* zone
   {
     return mlim_fail_memory(context, "the triangulation");
   }
-  for (size_t k = 0; k < zone->count; ++k)
-  {
-    complex->cells[zone->cells[k]].vertices[0] = -1;
-  }
-  const int32_t vertex = (int32_t)complex->vertex_count++;
+  const size_t vertex = complex->vertex_count++;
   complex->vertices[vertex] = (mlim_vertex){ .kind = MLIM_VERTEX_INSIDE, .ball = -1 };
   mlim_copy(point, complex->vertices[vertex].point);
   const mlim_status status = mlim_delaunay_fill(complex->delaunay, context, made);
-  if (status == MLIM_OK && mlim_complex_reserve_cells(complex, made))
-  {
-    return mlim_fail_memory(context, "the triangulation");
-  }
   if (status == MLIM_OK)
   {
-    take_cells(complex, made, vertex, label);
+    take_cells(complex, made, label);
   }
   return status;
 }
