@@ -9,7 +9,10 @@
 enum
 {
   FEW_PLACES = 64, /* borders with so many vertices have a table of edges; larger ones are hashed */
-  NO_SLOT = -1
+  NO_SLOT = -1,
+  /* Room for cells at the start: blocks so large (32 MB) cost no memory until they are used, and grow without
+     a copy that leaves its old place as a hole. */
+  FIRST_CELLS = 1 << 19
 };
 
 /* A facet between a dead cell and one that lives, or the outside. Its normal points out of the dead one. */
@@ -163,11 +166,7 @@ static int32_t search_neighbor(const mlim_delaunay* d, int32_t id, int index)
 /* The cells of the far vertices: of all fours those whose sphere is empty. They lie in general position. */
 static mlim_status make_first_cells(mlim_delaunay* d, mlim_context* context)
 {
-  enum
-  {
-    FOURS = 70
-  };
-  if (reserve_cells(d, FOURS + 1))
+  if (reserve_cells(d, FIRST_CELLS))
   {
     return mlim_fail_memory(context, "the triangulation");
   }
@@ -663,9 +662,10 @@ mlim_status mlim_delaunay_fill(
   }
   d->last = d->made[0];
   mlim_status status = MLIM_OK;
-  for (size_t k = 0; k < d->border_count && status == MLIM_OK; ++k)
+  for (size_t k = 0; k < d->border_count; ++k)
   {
-    status = make_sphere(d, d->made[k], context);
+    const mlim_status made = make_sphere(d, d->made[k], context);
+    status = status == MLIM_OK ? made : status;
   }
   if (out != NULL && status == MLIM_OK)
   {

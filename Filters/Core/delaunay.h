@@ -69,8 +69,8 @@ typedef enum mlim_delaunay_start
 } mlim_delaunay_start;
 
 /* First half of an insertion: the cells that would die. None if the point would be hidden by others or
-   would hide one, or is not inside the hull of the far vertices. `start`: a cell whose power sphere may
-   hold the point, or any cell near it, with `kind` telling which. No cell changes. */
+   would hide one, or is not inside the hull of the far vertices. `start`: a living cell whose power
+   sphere may hold the point, or any near it, with `kind` telling which. No cell changes. */
 mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], double weight,
   int32_t start, mlim_delaunay_start kind, mlim_context* context, mlim_delaunay_zone* out);
 

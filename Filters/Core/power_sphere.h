@@ -115,14 +115,13 @@ static inline int mlim_power_sphere_make(
     mlim_power_sphere_clear(out);
     return 0;
   }
-  const double inverse = 1 / volume;
   for (int j = 0; j < 3; ++j)
   {
     out->center[j] =
       points[0][j] +
-      0.5 * inverse * (right[0] * normal[0][j] + right[1] * normal[1][j] + right[2] * normal[2][j]);
+      0.5 * (right[0] * normal[0][j] + right[1] * normal[1][j] + right[2] * normal[2][j]) / volume;
   }
-  mlim_power_sphere_bound(points, weights, sum * inverse, out);
+  mlim_power_sphere_bound(points, weights, sum / volume, out);
   return 1;
 }
 
