@@ -3,17 +3,39 @@
 #include "memory.h"
 #include "status.h"
 
-#include <stdlib.h>
-
-static int compare_uses(const void* a, const void* b)
+enum
 {
-  const mlim_edge_use* x = (const mlim_edge_use*)a;
-  const mlim_edge_use* y = (const mlim_edge_use*)b;
-  if (x->upper != y->upper)
+  VERTICES_A_PIECE = 1 << 16 /* between two looks at the host: some milliseconds */
+};
+
+typedef struct sort_job
+{
+  const size_t* offsets;
+  mlim_edge_use* uses;
+} sort_job;
+
+/* By upper vertex. A vertex has few uses, placed in the order of their triangles, which is kept. */
+static void sort_uses(mlim_edge_use* uses, size_t count)
+{
+  for (size_t k = 1; k < count; ++k)
   {
-    return x->upper < y->upper ? -1 : 1;
+    const mlim_edge_use use = uses[k];
+    size_t at = k;
+    for (; at > 0 && uses[at - 1].upper > use.upper; --at)
+    {
+      uses[at] = uses[at - 1];
+    }
+    uses[at] = use;
   }
-  return (x->triangle > y->triangle) - (x->triangle < y->triangle);
+}
+
+static void sort_body(void* data, size_t begin, size_t end)
+{
+  const sort_job* job = (const sort_job*)data;
+  for (size_t v = begin; v < end; ++v)
+  {
+    sort_uses(job->uses + job->offsets[v], job->offsets[v + 1] - job->offsets[v]);
+  }
 }
 
 static void place_uses(const mlim_mesh* mesh, mlim_edges* out)
@@ -34,7 +56,8 @@ static void place_uses(const mlim_mesh* mesh, mlim_edges* out)
   }
 }
 
-mlim_status mlim_edges_create(const mlim_mesh* mesh, mlim_context* context, mlim_edges* out)
+mlim_status mlim_edges_create(
+  const mlim_mesh* mesh, double done, mlim_context* context, mlim_edges* out)
 {
   out->use_count = 3 * mesh->triangle_count;
   out->offsets = mlim_allocate_zeroed(mesh->vertex_count + 2, sizeof *out->offsets);
@@ -59,12 +82,19 @@ mlim_status mlim_edges_create(const mlim_mesh* mesh, mlim_context* context, mlim
     out->offsets[v + 2] += out->offsets[v + 1];
   }
   place_uses(mesh, out);
-  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  const mlim_status status =
+    mlim_parallel_stage(context, &(mlim_stage_work){ .count = mesh->vertex_count,
+                                   .body = sort_body,
+                                   .job = &(sort_job){ .offsets = out->offsets, .uses = out->uses },
+                                   .stage = MLIM_STAGE_CERTIFICATE,
+                                   .from = done,
+                                   .to = done,
+                                   .step = VERTICES_A_PIECE });
+  if (status != MLIM_OK)
   {
-    qsort(out->uses + out->offsets[v], out->offsets[v + 1] - out->offsets[v], sizeof *out->uses,
-      compare_uses);
+    mlim_edges_free(out);
   }
-  return MLIM_OK;
+  return status;
 }
 
 void mlim_edges_free(mlim_edges* edges)
