@@ -20,7 +20,15 @@ static inline void mlim_ahead_ask(const void* memory)
 #endif
 }
 
-/* The vertices of a cell, and its neighbour beyond a facet. */
+/* Most vertices lie in two lines of the cache. */
+static inline void mlim_ahead_of_vertex(const mlim_complex* complex, int32_t vertex)
+{
+  const mlim_vertex* v = &complex->vertices[vertex];
+  mlim_ahead_ask(v);
+  mlim_ahead_ask(&v->is_broken);
+}
+
+/* The vertices of a facet, and the cell beyond it. */
 static inline void mlim_ahead_of_facet(const mlim_complex* complex, int32_t cell, int index)
 {
   const mlim_cell* c = &complex->cells[cell];
@@ -28,7 +36,7 @@ static inline void mlim_ahead_of_facet(const mlim_complex* complex, int32_t cell
   {
     if (c->vertices[0] >= 0)
     {
-      mlim_ahead_ask(&complex->vertices[c->vertices[(index + k) & 3]]);
+      mlim_ahead_of_vertex(complex, c->vertices[(index + k) & 3]);
     }
   }
   if (c->neighbors[index] >= 0)

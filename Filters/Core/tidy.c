@@ -181,8 +181,9 @@ static void look_body(void* data, size_t begin, size_t end)
   {
     const unsigned sides = t->boundary->sides[c] >> MLIM_FIRST_SHIFT;
     unsigned looks = 0;
-    if (c + MLIM_CELLS_AHEAD < end)
+    if (c + 2 * MLIM_CELLS_AHEAD < end)
     {
+      mlim_ahead_ask(&t->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
       ask_ahead(t, c + MLIM_CELLS_AHEAD);
     }
     for (int k = 0; sides >> k != 0; ++k)

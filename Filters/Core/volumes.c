@@ -171,7 +171,7 @@ static void ask_ahead(const cell_job* job, size_t k, size_t end)
     const int32_t* id = job->complex->cells[job->first + k + MLIM_CELLS_AHEAD].vertices;
     for (int v = 0; v < 4 && id[0] >= 0; ++v)
     {
-      mlim_ahead_ask(&job->complex->vertices[id[v]]);
+      mlim_ahead_of_vertex(job->complex, id[v]);
     }
   }
 }
