@@ -235,7 +235,8 @@ static mlim_status settle_pinches(build* b, mlim_mesh* out)
   b->balls = balls;
   b->used_balls = &b->balls;
   b->refinement.complex.balls = &b->balls;
-  return mlim_tidy_count_strays(&b->refinement.complex, &b->boundary, b->context, &b->stray_count);
+  return mlim_tidy_count_strays(
+    &b->refinement.complex, &b->boundary, b->done, b->context, &b->stray_count);
 }
 
 static mlim_status read(build* b, mlim_mesh* out)

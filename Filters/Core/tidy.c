@@ -16,6 +16,7 @@ enum
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
   SHAPE_SWEEPS = 3,
+  BLOCK = 4096,       /* cells whose strays are counted together */
   LOOK_EVERY = 65536, /* cells between two looks at the host: some milliseconds */
   MAX_STEPS = 256     /* vertices that one failed vertex may lead to */
 };
@@ -148,8 +149,21 @@ typedef struct tidier
   size_t bad_count, bad_capacity;
 } tidier;
 
-/* As the bits of facet 0. */
-static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index)
+/* Verification has looked at nearly all facets already, and from as far unless a bound is tighter. Not to
+   be asked once labels have changed: they may have changed sides. */
+static int is_known_to_be_seen(const mlim_refinement* r, const mlim_cell* cell, int index)
+{
+  const mlim_complex* complex = &r->complex;
+  const int32_t other = complex->cells[cell->neighbors[index]].label;
+  const mlim_facet* facet = &complex->facets[cell->facets[index]];
+  return facet->is_alive && facet->is_settled &&
+         facet->sheet.low == (cell->label < other ? cell->label : other) &&
+         facet->sheet.high == (cell->label < other ? other : cell->label) &&
+         !(mlim_criteria_distance(complex, r->options, &facet->sheet) < r->options->facet_distance);
+}
+
+/* As the bits of facet 0. is_first_look: no label has changed yet. */
+static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index, int is_first_look)
 {
   const mlim_complex* complex = &r->complex;
   const mlim_cell* cell = &complex->cells[id];
@@ -157,18 +171,21 @@ static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index)
   const int is_stray = stray_count(complex, cell, index, cell->label, other) > 0;
   const int is_bad =
     is_misshapen(r, cell, index) ||
-    !mlim_sides_are_seen(complex, id, index, cell->label, other, r->options->facet_distance);
+    (!(is_first_look && is_known_to_be_seen(r, cell, index)) &&
+      !mlim_sides_are_seen(complex, id, index, cell->label, other, r->options->facet_distance));
   return (unsigned)is_stray | (unsigned)is_bad << BAD_SHIFT;
 }
 
 static void ask_ahead(const tidier* t, size_t cell)
 {
+  const mlim_complex* complex = &t->refinement->complex;
   const unsigned sides = t->boundary->sides[cell] >> MLIM_FIRST_SHIFT;
   for (int k = 0; sides >> k != 0; ++k)
   {
     if (sides >> k & 1u)
     {
-      mlim_ahead_of_facet(&t->refinement->complex, (int32_t)cell, k);
+      mlim_ahead_of_facet(complex, (int32_t)cell, k);
+      mlim_ahead_ask(&complex->facets[complex->cells[cell].facets[k]]);
     }
   }
 }
@@ -188,7 +205,7 @@ static void look_body(void* data, size_t begin, size_t end)
     }
     for (int k = 0; sides >> k != 0; ++k)
     {
-      looks |= sides >> k & 1u ? look_at_facet(t->refinement, (int32_t)c, k) << k : 0;
+      looks |= sides >> k & 1u ? look_at_facet(t->refinement, (int32_t)c, k, 1) << k : 0;
     }
     t->looks[c] = (unsigned char)looks;
   }
@@ -262,8 +279,8 @@ static void look_again(tidier* t, int32_t id)
     const int32_t other = cell->neighbors[k];
     const int back = index_of(&complex->cells[other], id);
     const unsigned look = cell->label == complex->cells[other].label ? 0
-                          : id < other ? look_at_facet(t->refinement, id, k)
-                                       : look_at_facet(t->refinement, other, back);
+                          : id < other ? look_at_facet(t->refinement, id, k, 0)
+                                       : look_at_facet(t->refinement, other, back, 0);
     note(t, id, k, look);
     note(t, other, back, look);
   }
@@ -354,25 +371,58 @@ static size_t count_strays(const tidier* t)
   return count;
 }
 
-mlim_status mlim_tidy_count_strays(
-  const mlim_complex* complex, const mlim_boundary* boundary, mlim_context* context, size_t* count)
+typedef struct stray_job
 {
-  const size_t facets = mlim_boundary_count(boundary);
-  mlim_boundary_facet* list = mlim_allocate(facets, sizeof *list);
+  const mlim_complex* complex;
+  const mlim_boundary* boundary;
+  size_t* counts; /* of each block of cells */
+} stray_job;
+
+static void stray_body(void* data, size_t begin, size_t end)
+{
+  const stray_job* job = (const stray_job*)data;
+  const mlim_complex* complex = job->complex;
+  for (size_t b = begin; b < end; ++b)
+  {
+    const size_t left = complex->cell_count - b * BLOCK;
+    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
+    job->counts[b] = 0;
+    for (size_t c = b * BLOCK; c < last; ++c)
+    {
+      const mlim_cell* cell = &complex->cells[c];
+      const unsigned sides = job->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+      for (int k = 0; sides >> k != 0; ++k)
+      {
+        job->counts[b] += sides >> k & 1u && stray_count(complex, cell, k, cell->label,
+                                               complex->cells[cell->neighbors[k]].label) > 0;
+      }
+    }
+  }
+}
+
+mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
+  double done, mlim_context* context, size_t* count)
+{
+  const size_t blocks = (complex->cell_count + BLOCK - 1) / BLOCK;
+  const stray_job job = {
+    .complex = complex, .boundary = boundary, .counts = mlim_allocate(blocks, sizeof *job.counts)
+  };
+  const mlim_status status = job.counts == NULL
+                               ? mlim_fail_memory(context, "mending the topology")
+                               : mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
+                                                                .body = stray_body,
+                                                                .job = (void*)&job,
+                                                                .stage = MLIM_STAGE_CERTIFICATE,
+                                                                .from = done,
+                                                                .to = done,
+                                                                .step = LOOK_EVERY / BLOCK });
   *count = 0;
-  if (list == NULL)
+  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
   {
-    return mlim_fail_memory(context, "mending the topology");
+    *count += job.counts[b];
   }
-  mlim_boundary_list(boundary, list);
-  for (size_t f = 0; f < facets; ++f)
-  {
-    const mlim_cell* cell = &complex->cells[list[f].cell];
-    const int32_t other = complex->cells[cell->neighbors[list[f].index]].label;
-    *count += stray_count(complex, cell, list[f].index, cell->label, other) > 0;
-  }
-  mlim_release(list);
-  return MLIM_OK;
+  mlim_release(job.counts);
+  return status;
 }
 
 /* ---- stars that are no disks ---- */
