@@ -27,9 +27,9 @@ order='
 4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         radius_map span balls
 5 triangulation power_sphere predicates delaunay
-6 criteria      complex records sides criteria disk
+6 criteria      complex ahead boundary records sides criteria disk
 7 refinement    queue seeds known bends wedge partner refine tidy pinch spots zone box cells
-8 products      volumes edges skin nearest mesh quality certificate
+8 products      volumes edges skin nearest mesh quality unresolved certificate
 9 whole         verify volume build
 '
 

@@ -187,7 +187,7 @@ static void separate(covering* work, int32_t a, int32_t b, double distance)
 {
   const double* radii = work->list.balls.radii;
   const mlim_radius_limit which = limit_between(work, a, b);
-  const double factor = fmax(APART_BY * distance / (radii[a] + radii[b]), 0.5 * LOWER_BY);
+  const double factor = mlim_max(APART_BY * distance / (radii[a] + radii[b]), 0.5 * LOWER_BY);
   if (radii[a] <= MUCH_LARGER * radii[b])
   {
     lower(work, which, b, factor * radii[b]);

@@ -46,7 +46,7 @@ static void examine_neighbours(const examination* work)
     const int32_t b = balls->edges[2 * e + 1];
     const double d = center_distance(balls, a, b);
     const int32_t large = balls->radii[a] >= balls->radii[b] ? a : b;
-    const double small_radius = fmin(balls->radii[a], balls->radii[b]);
+    const double small_radius = mlim_min(balls->radii[a], balls->radii[b]);
     if (balls->radii[a] + balls->radii[b] < d + OVERLAP_MARGIN * small_radius)
     {
       work->report(work->user, MLIM_BALLS_APART, a, b, d);
@@ -154,7 +154,7 @@ static double segment_distance_squared(
   mlim_subtract(point, a, to);
   const double length_squared = mlim_dot(along, along);
   const double t = length_squared > 0 ? mlim_dot(to, along) / length_squared : 0;
-  *part = fmin(fmax(t, 0), 1);
+  *part = mlim_min(mlim_max(t, 0), 1);
   double nearest[3];
   mlim_interpolate(a, b, *part, nearest);
   return mlim_distance_squared(point, nearest);
@@ -202,7 +202,7 @@ static int is_piece_good(
   double worst[3];
   mlim_interpolate(from, to, d0 < 0 && d1 > 0 ? d0 / (d0 - d1) : 1, worst);
   return deviation <= bound * bound &&
-         fmin(power(balls, ends[0], worst), power(balls, ends[1], worst)) <= 0;
+         mlim_min(power(balls, ends[0], worst), power(balls, ends[1], worst)) <= 0;
 }
 
 /* The piece of the curve from a place to the next one: are all its straight pieces good? */

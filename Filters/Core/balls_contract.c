@@ -193,7 +193,7 @@ static mlim_status join(contraction* work, const loose_edge* edge)
   const double* from = work->list.balls.centers + 3 * (size_t)a;
   const double* to = work->list.balls.centers + 3 * (size_t)b;
   const double radius = work->list.balls.radii[a];
-  const double smaller = fmin(radius, work->list.balls.radii[b]);
+  const double smaller = mlim_min(radius, work->list.balls.radii[b]);
   const double d = mlim_distance(from, to);
   const double gap = d - radius - work->list.balls.radii[b];
   if (gap < 0)

@@ -1,6 +1,7 @@
 /* From balls to the mesh: the order of the stages of refinement. */
 #include "balls_prune.h"
 #include "bends.h"
+#include "boundary.h"
 #include "certificate.h"
 #include "memory.h"
 #include "mesh.h"
@@ -12,6 +13,7 @@
 #include "spots.h"
 #include "status.h"
 #include "tidy.h"
+#include "unresolved.h"
 #include "vector.h"
 #include "verify.h"
 #include "volume.h"
@@ -34,6 +36,9 @@ typedef struct build
   size_t hidden_ball_count;
   size_t insertion_count; /* of the passes before this one */
   size_t relabeled_cell_count;
+  size_t stray_count;
+  double done;            /* of the certificate's stage */
+  mlim_boundary boundary; /* of the finished complex */
   mlim_edges edges;       /* of the mesh */
   int32_t* mesh_vertices; /* of each of the complex's vertices, for the volume */
 } build;
@@ -204,48 +209,17 @@ static mlim_status refine_all(build* b)
            : status;
 }
 
-static void count_unresolved(const build* b, mlim_report* report)
+static mlim_status find_boundary(build* b, mlim_mesh* out)
 {
-  const mlim_complex* complex = &b->refinement.complex;
-  report->unresolved_patch_count = mlim_tidy_count_strays(complex);
-  for (size_t f = 1; f < complex->facet_count; ++f)
-  {
-    const mlim_facet* facet = &complex->facets[f];
-    if (!facet->is_alive)
-    {
-      continue;
-    }
-    const mlim_verdict verdict = mlim_criteria_judge(complex, b->options, facet);
-    switch (verdict.badness)
-    {
-      case MLIM_BAD_CROSSINGS:
-        ++report->unresolved_crossing_count;
-        break;
-      case MLIM_BAD_SIZE:
-        ++report->unresolved_size_count;
-        break;
-      case MLIM_BAD_DISTANCE:
-        ++report->unresolved_distance_count;
-        break;
-      case MLIM_BAD_FAR:
-      case MLIM_BAD_SHEET: /* counted by the labels of the cells, below */
-      case MLIM_BAD_RATIO:
-      case MLIM_BAD_DISK:
-      case MLIM_BAD_NONE:
-        break;
-    }
-    if (verdict.radius_edge_ratio > b->options->facet_radius_edge_ratio)
-    {
-      ++*(
-        verdict.has_ball ? &report->unresolved_ball_ratio_count : &report->unresolved_ratio_count);
-    }
-  }
+  (void)out;
+  return mlim_boundary_find(&b->refinement.complex, b->done, b->context, &b->boundary);
 }
 
 static mlim_status tidy(build* b, mlim_mesh* out)
 {
   (void)out;
-  return mlim_tidy_run(&b->refinement, b->context, &b->relabeled_cell_count);
+  return mlim_tidy_run(
+    &b->refinement, &b->boundary, b->done, b->context, &b->relabeled_cell_count, &b->stray_count);
 }
 
 static mlim_status settle_pinches(build* b, mlim_mesh* out)
@@ -253,29 +227,31 @@ static mlim_status settle_pinches(build* b, mlim_mesh* out)
   (void)out;
   mlim_balls balls;
   size_t count;
-  const mlim_status status = mlim_pinch_run(&b->refinement, b->context, &balls, &count);
-  if (status == MLIM_OK && count > 0)
+  const mlim_status status = mlim_pinch_run(&b->refinement, b->done, b->context, &balls, &count);
+  if (status != MLIM_OK || count == 0)
   {
-    mlim_balls_free(&b->balls);
-    b->balls = balls;
-    b->used_balls = &b->balls;
-    b->refinement.complex.balls = &b->balls;
+    return status;
   }
-  return status;
+  mlim_balls_free(&b->balls);
+  b->balls = balls;
+  b->used_balls = &b->balls;
+  b->refinement.complex.balls = &b->balls;
+  return mlim_tidy_count_strays(
+    &b->refinement.complex, &b->boundary, b->done, b->context, &b->stray_count);
 }
 
 static mlim_status read(build* b, mlim_mesh* out)
 {
   const size_t count = b->refinement.complex.vertex_count;
   b->mesh_vertices = mlim_allocate(count, sizeof *b->mesh_vertices);
-  return b->mesh_vertices == NULL
-           ? mlim_fail_memory(b->context, "the mesh")
-           : mlim_mesh_read_mapped(&b->refinement.complex, b->context, b->mesh_vertices, out);
+  return b->mesh_vertices == NULL ? mlim_fail_memory(b->context, "the mesh")
+                                  : mlim_mesh_read(&b->refinement.complex, &b->boundary, b->done,
+                                      b->context, b->mesh_vertices, out);
 }
 
 static mlim_status find_edges(build* b, mlim_mesh* out)
 {
-  return mlim_edges_create(out, b->context, &b->edges);
+  return mlim_edges_create(out, b->done, b->context, &b->edges);
 }
 
 static mlim_status find_patches(build* b, mlim_mesh* out)
@@ -290,17 +266,29 @@ static mlim_status settle_edges(build* b, mlim_mesh* out)
 
 static mlim_status measure_quality(build* b, mlim_mesh* out)
 {
+  return mlim_quality_measure(
+    out, &b->edges, b->options->facet_radius_edge_ratio, b->done, b->context);
+}
+
+static mlim_status count_open_edges(build* b, mlim_mesh* out)
+{
+  return mlim_quality_count_open_edges(
+    out, &b->edges, b->done, b->context, &out->certificate.open_edge_count);
+}
+
+static mlim_status count_unresolved(build* b, mlim_mesh* out)
+{
   mlim_report* report = &out->report;
-  mlim_quality_measure(out, &b->edges, b->options->facet_radius_edge_ratio);
-  out->certificate.open_edge_count = mlim_quality_count_open_edges(out, &b->edges);
+  const mlim_status status =
+    mlim_unresolved_count(&b->refinement.complex, b->options, b->done, b->context, report);
   report->insertion_count = b->insertion_count + b->refinement.insertion_count;
   report->relabeled_cell_count = b->relabeled_cell_count;
   report->hidden_ball_count = b->hidden_ball_count;
-  count_unresolved(b, report);
+  report->unresolved_patch_count = b->stray_count;
   const size_t known = report->unresolved_ratio_count;
   report->relabeled_ratio_count -=
     known < report->relabeled_ratio_count ? known : report->relabeled_ratio_count;
-  return MLIM_OK;
+  return status;
 }
 
 static mlim_status count_disks(build* b, mlim_mesh* out)
@@ -323,15 +311,16 @@ static mlim_status certify(build* b, mlim_mesh* out)
 static mlim_status read_and_measure(build* b, mlim_mesh* out)
 {
   /* Certifying reports the rest of the stage itself. */
-  mlim_status (*const steps[])(build*, mlim_mesh*) = { tidy, settle_pinches, read, find_edges,
-    find_patches, settle_edges, measure_quality, count_disks, certify };
+  mlim_status (*const steps[])(build*, mlim_mesh*) = { find_boundary, tidy, settle_pinches, read,
+    find_edges, find_patches, settle_edges, measure_quality, count_open_edges, count_unresolved,
+    count_disks, certify };
   const size_t count = sizeof steps / sizeof *steps;
   /* Seeding may have ended at the vertex limit. */
   mlim_status status = mlim_refine_update(&b->refinement, b->context);
   for (size_t k = 0; k < count && status == MLIM_OK; ++k)
   {
-    const double done = MLIM_CERTIFY_FROM * (double)k / (double)count;
-    status = mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, done);
+    b->done = MLIM_CERTIFY_FROM * (double)k / (double)count;
+    status = mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, b->done);
     status = status == MLIM_OK ? steps[k](b, out) : status;
   }
   return status == MLIM_OK ? mlim_progress(b->context, MLIM_STAGE_CERTIFICATE, 1) : status;
@@ -405,6 +394,7 @@ static mlim_status refine(const mlim_field* field, const mlim_balls* balls,
   mlim_refine_free(&b.refinement);
   mlim_balls_free(&b.balls);
   mlim_edges_free(&b.edges);
+  mlim_boundary_free(&b.boundary);
   mlim_components_free(&b.components);
   mlim_release(b.volumes);
   mlim_release(b.voxels);

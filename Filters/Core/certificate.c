@@ -57,28 +57,36 @@ static int touches_box(const mlim_field_grid* grid, const mlim_component* compon
   return 0;
 }
 
-void mlim_certificate_find_components(const mlim_complex* complex,
-  const mlim_components* components, size_t min_voxels, unsigned char* is_found, size_t* lost)
+/* Marks small components, of which none is asked for, and background that reaches the box, which is one
+   with the outside. The number of the others. */
+static size_t count_wanted(const mlim_field* field, const mlim_components* components,
+  size_t min_voxels, unsigned char* is_found)
 {
-  const mlim_field* field = complex->oracle.field;
-  memset(is_found, 0, components->count);
-  for (size_t c = 0; c < complex->cell_count; ++c)
-  {
-    const int32_t component =
-      complex->cells[c].vertices[0] >= 0 ? component_at(complex, components, (int32_t)c) : -1;
-    if (component >= 0)
-    {
-      is_found[component] = 1;
-    }
-  }
-  *lost = 0;
+  size_t count = 0;
   for (size_t c = 0; c < components->count; ++c)
   {
     const mlim_component* component = &components->components[c];
-    /* Background that reaches the box is one with the outside. */
-    is_found[c] |= component->label == mlim_field_outside_label(field) &&
-                   touches_box(mlim_field_grid_of(field), component);
-    *lost += component->voxel_count >= min_voxels && !is_found[c];
+    is_found[c] =
+      component->voxel_count < min_voxels || (component->label == mlim_field_outside_label(field) &&
+                                               touches_box(mlim_field_grid_of(field), component));
+    count += !is_found[c];
+  }
+  return count;
+}
+
+void mlim_certificate_find_components(const mlim_complex* complex,
+  const mlim_components* components, size_t min_voxels, unsigned char* is_found, size_t* lost)
+{
+  *lost = count_wanted(complex->oracle.field, components, min_voxels, is_found);
+  for (size_t c = 0; c<complex->cell_count&& * lost> 0; ++c)
+  {
+    const int32_t component =
+      complex->cells[c].vertices[0] >= 0 ? component_at(complex, components, (int32_t)c) : -1;
+    if (component >= 0 && !is_found[component])
+    {
+      is_found[component] = 1;
+      --*lost;
+    }
   }
 }
 

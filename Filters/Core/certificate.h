@@ -6,8 +6,8 @@
 #include "components.h"
 #include "mlim.h"
 
-/* Which components (one byte each) have a cell of the complex; *lost counts those of at least
-   min_voxels that have none. */
+/* Which components (one byte each) have a cell of the complex, or are too small to be asked for: below
+   min_voxels; *lost counts the others. */
 void mlim_certificate_find_components(const mlim_complex* complex,
   const mlim_components* components, size_t min_voxels, unsigned char* is_found, size_t* lost);
 

@@ -160,9 +160,42 @@ static void extend(mlim_component* c, const run* r, int32_t y, int32_t z)
   c->voxel_count += (size_t)(r->end - r->begin);
 }
 
+typedef struct fill_job
+{
+  const run_list* list;
+  size_t row_length;
+  int32_t* of_point;
+} fill_job;
+
+static void fill_body(void* data, size_t begin, size_t end)
+{
+  const fill_job* job = (const fill_job*)data;
+  for (size_t row = begin; row < end; ++row)
+  {
+    for (size_t k = job->list->rows[row]; k < job->list->rows[row + 1]; ++k)
+    {
+      const run* r = &job->list->runs[k];
+      for (int32_t x = r->begin; x < r->end; ++x)
+      {
+        job->of_point[row * job->row_length + (size_t)x] = -1 - r->parent;
+      }
+    }
+  }
+}
+
+static mlim_status fill(
+  const mlim_field_grid* grid, const run_list* list, mlim_context* context, mlim_components* out)
+{
+  fill_job job = { .list = list, .row_length = (size_t)grid->dims[0], .of_point = out->of_point };
+  return mlim_parallel_stage(
+    context, &(mlim_stage_work){ .count = (size_t)grid->dims[1] * (size_t)grid->dims[2],
+               .body = fill_body,
+               .job = &job,
+               .stage = MLIM_STAGE_SURFACE });
+}
+
 static void measure(const mlim_field_grid* grid, const run_list* list, mlim_components* out)
 {
-  const size_t nx = (size_t)grid->dims[0];
   const size_t ny = (size_t)grid->dims[1];
   for (size_t row = 0; row < ny * (size_t)grid->dims[2]; ++row)
   {
@@ -171,10 +204,6 @@ static void measure(const mlim_field_grid* grid, const run_list* list, mlim_comp
       const run* r = &list->runs[k];
       const int32_t number = -1 - r->parent;
       extend(&out->components[number], r, (int32_t)(row % ny), (int32_t)(row / ny));
-      for (int32_t x = r->begin; x < r->end; ++x)
-      {
-        out->of_point[row * nx + (size_t)x] = number;
-      }
     }
   }
 }
@@ -221,8 +250,9 @@ mlim_status mlim_components_find(
   if (status == MLIM_OK)
   {
     measure(grid, &list, out);
+    status = fill(grid, &list, context, out);
   }
-  else
+  if (status != MLIM_OK)
   {
     mlim_components_free(out);
   }

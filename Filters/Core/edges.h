@@ -21,7 +21,9 @@ typedef struct mlim_edges
   size_t use_count;
 } mlim_edges;
 
-mlim_status mlim_edges_create(const mlim_mesh* mesh, mlim_context* context, mlim_edges* out);
+/* `done` is reported as the share of the certificate's stage. */
+mlim_status mlim_edges_create(
+  const mlim_mesh* mesh, double done, mlim_context* context, mlim_edges* out);
 void mlim_edges_free(mlim_edges* edges);
 
 /* End of the run of uses that starts at `first` and belongs to one edge of the vertex `lower`. */

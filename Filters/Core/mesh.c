@@ -1,16 +1,27 @@
 #include "mesh.h"
 
+#include "ahead.h"
 #include "memory.h"
 #include "status.h"
 #include "vector.h"
 
 #include <string.h>
 
+enum
+{
+  ITEMS_A_PIECE = 1 << 16 /* between two looks at the host: some milliseconds */
+};
+
 typedef struct reader
 {
   const mlim_complex* complex;
+  mlim_context* context;
+  double done; /* of the stage */
   mlim_mesh* mesh;
-  int32_t* vertex_of; /* mesh vertex of each vertex of the complex, -1 */
+  mlim_boundary_facet* facets; /* of each triangle */
+  int32_t* vertex_of;          /* mesh vertex of each vertex of the complex, -1 */
+  int32_t* vertex_of_ball;     /* the complex's */
+  double* volumes;             /* of the cone from the origin over each triangle */
 } reader;
 
 /* The output's order of a facet's sides: the background second, else the lower id first. */
@@ -24,60 +35,99 @@ static int is_ordered(const mlim_field* field, int32_t first, int32_t second)
   return mlim_field_label_id(field, first) < mlim_field_label_id(field, second);
 }
 
-static int is_boundary(const mlim_complex* complex, const mlim_cell* cell, int32_t id, int index)
+static mlim_status run(const reader* r, mlim_body body, size_t count)
 {
-  const int32_t other = cell->neighbors[index];
-  return cell->vertices[0] >= 0 && other != MLIM_NO_CELL && id < other &&
-         complex->cells[other].label != cell->label;
+  return mlim_parallel_stage(r->context, &(mlim_stage_work){ .count = count,
+                                           .body = body,
+                                           .job = (void*)r,
+                                           .stage = MLIM_STAGE_CERTIFICATE,
+                                           .from = r->done,
+                                           .to = r->done,
+                                           .step = ITEMS_A_PIECE });
 }
 
-static int32_t take_vertex(reader* r, int32_t vertex)
-{
-  if (r->vertex_of[vertex] < 0)
-  {
-    r->vertex_of[vertex] = (int32_t)r->mesh->vertex_count++;
-  }
-  return r->vertex_of[vertex];
-}
-
-static void read_triangle(reader* r, int32_t id, int index)
+/* With the complex's vertices. */
+static void read_triangle(const reader* r, size_t t)
 {
   const mlim_complex* complex = r->complex;
+  const int32_t id = r->facets[t].cell;
+  const int index = r->facets[t].index;
   const mlim_cell* cell = &complex->cells[id];
   const int32_t other = complex->cells[cell->neighbors[index]].label;
   mlim_mesh* mesh = r->mesh;
   int32_t v[3];
   mlim_complex_facet_vertices(complex, id, index, v); /* the normal points out of the cell */
-  int32_t labels[2] = { cell->label, other };
-  if (!is_ordered(complex->oracle.field, cell->label, other))
-  {
-    labels[0] = other;
-    labels[1] = cell->label;
-    const int32_t swap = v[1];
-    v[1] = v[2];
-    v[2] = swap;
-  }
-  const size_t t = mesh->triangle_count++;
-  for (int k = 0; k < 3; ++k)
-  {
-    mesh->triangles[3 * t + (size_t)k] = take_vertex(r, v[k]);
-  }
-  mesh->triangle_labels[2 * t] = labels[0];
-  mesh->triangle_labels[2 * t + 1] = labels[1];
+  const int is_swapped = !is_ordered(complex->oracle.field, cell->label, other);
+  mesh->triangle_labels[2 * t] = is_swapped ? other : cell->label;
+  mesh->triangle_labels[2 * t + 1] = is_swapped ? cell->label : other;
+  mesh->triangles[3 * t] = v[0];
+  mesh->triangles[3 * t + 1] = v[is_swapped ? 2 : 1];
+  mesh->triangles[3 * t + 2] = v[is_swapped ? 1 : 2];
   mesh->triangle_faces[t] = mlim_complex_face(complex, id, index);
 }
 
-static size_t count_triangles(const mlim_complex* complex)
+static double cone_volume(const mlim_complex* complex, const int32_t vertices[3])
 {
-  size_t count = 0;
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  const double* a = complex->vertices[vertices[0]].point;
+  const double* b = complex->vertices[vertices[1]].point;
+  const double* c = complex->vertices[vertices[2]].point;
+  double n[3];
+  mlim_cross(b, c, n);
+  return mlim_dot(a, n) / 6;
+}
+
+static void ask_ahead(const reader* r, size_t t, size_t end)
+{
+  if (t + MLIM_CELLS_AHEAD < end)
   {
-    for (int k = 0; k < 4; ++k)
+    mlim_ahead_ask(&r->complex->cells[r->facets[t + MLIM_CELLS_AHEAD].cell]);
+  }
+  if (t + MLIM_VERTICES_AHEAD < end)
+  {
+    const mlim_boundary_facet* facet = &r->facets[t + MLIM_VERTICES_AHEAD];
+    mlim_ahead_of_facet(r->complex, facet->cell, facet->index);
+  }
+}
+
+static void triangle_body(void* data, size_t begin, size_t end)
+{
+  const reader* r = (const reader*)data;
+  for (size_t t = begin; t < end; ++t)
+  {
+    ask_ahead(r, t, end);
+    read_triangle(r, t);
+    r->volumes[t] = cone_volume(r->complex, r->mesh->triangles + 3 * t);
+  }
+}
+
+/* Numbers the vertices in the order in which the triangles name them. */
+static void number_vertices(reader* r)
+{
+  mlim_mesh* mesh = r->mesh;
+  for (size_t k = 0; k < 3 * mesh->triangle_count; ++k)
+  {
+    int32_t* number = &r->vertex_of[mesh->triangles[k]];
+    if (*number < 0)
     {
-      count += (size_t)is_boundary(complex, &complex->cells[c], (int32_t)c, k);
+      *number = (int32_t)mesh->vertex_count++;
+    }
+    mesh->triangles[k] = *number;
+  }
+}
+
+static void vertex_body(void* data, size_t begin, size_t end)
+{
+  const reader* r = (const reader*)data;
+  for (size_t v = begin; v < end; ++v)
+  {
+    if (r->vertex_of[v] >= 0)
+    {
+      const mlim_vertex* vertex = &r->complex->vertices[v];
+      const size_t at = (size_t)r->vertex_of[v];
+      r->mesh->node_types[at] = mlim_mesh_node_type(r->complex, vertex, &r->mesh->label_counts[at]);
+      mlim_copy(vertex->point, r->mesh->vertices + 3 * at);
     }
   }
-  return count;
 }
 
 static void read_junctions(reader* r, const int32_t* vertex_of_ball, int32_t kind)
@@ -145,21 +195,16 @@ int32_t mlim_mesh_node_type(
   return type + (is_on_box ? MLIM_NODE_ON_BOX : 0);
 }
 
-static void measure_volumes(mlim_mesh* mesh, const mlim_field* field)
+/* One after the other, whoever measured them: sums depend on their order. */
+static void add_volumes(const reader* r)
 {
-  const int32_t outside = mlim_field_outside_label(field);
+  mlim_mesh* mesh = r->mesh;
   for (size_t t = 0; t < mesh->triangle_count; ++t)
   {
-    const double* a = mesh->vertices + 3 * (size_t)mesh->triangles[3 * t];
-    const double* b = mesh->vertices + 3 * (size_t)mesh->triangles[3 * t + 1];
-    const double* c = mesh->vertices + 3 * (size_t)mesh->triangles[3 * t + 2];
-    double n[3];
-    mlim_cross(b, c, n);
-    const double volume = mlim_dot(a, n) / 6;
-    mesh->volumes[mesh->triangle_labels[2 * t]] += volume;
-    mesh->volumes[mesh->triangle_labels[2 * t + 1]] -= volume;
+    mesh->volumes[mesh->triangle_labels[2 * t]] += r->volumes[t];
+    mesh->volumes[mesh->triangle_labels[2 * t + 1]] -= r->volumes[t];
   }
-  mesh->volumes[outside] = 0;
+  mesh->volumes[mlim_field_outside_label(r->complex->oracle.field)] = 0;
 }
 
 static mlim_status allocate_mesh(
@@ -189,7 +234,7 @@ static mlim_status allocate_mesh(
   return MLIM_OK;
 }
 
-static void read_all(reader* r, int32_t* vertex_of_ball)
+static void find_balls(const reader* r)
 {
   const mlim_complex* complex = r->complex;
   for (size_t v = 0; v < complex->vertex_count; ++v)
@@ -197,49 +242,54 @@ static void read_all(reader* r, int32_t* vertex_of_ball)
     r->vertex_of[v] = -1;
     if (complex->vertices[v].ball >= 0)
     {
-      vertex_of_ball[complex->vertices[v].ball] = (int32_t)v;
-    }
-  }
-  for (size_t c = 0; c < complex->cell_count; ++c)
-  {
-    for (int k = 0; k < 4; ++k)
-    {
-      if (is_boundary(complex, &complex->cells[c], (int32_t)c, k))
-      {
-        read_triangle(r, (int32_t)c, k);
-      }
-    }
-  }
-  read_curves(r, vertex_of_ball);
-  for (size_t v = 0; v < complex->vertex_count; ++v)
-  {
-    if (r->vertex_of[v] >= 0)
-    {
-      const size_t at = (size_t)r->vertex_of[v];
-      r->mesh->node_types[at] =
-        mlim_mesh_node_type(complex, &complex->vertices[v], &r->mesh->label_counts[at]);
-      mlim_copy(complex->vertices[v].point, r->mesh->vertices + 3 * at);
+      r->vertex_of_ball[complex->vertices[v].ball] = (int32_t)v;
     }
   }
 }
 
-mlim_status mlim_mesh_read_mapped(
-  const mlim_complex* complex, mlim_context* context, int32_t* vertex_of, mlim_mesh* out)
+static mlim_status read_all(reader* r)
 {
-  *out = (mlim_mesh){ 0 };
-  mlim_status status = allocate_mesh(complex, context, count_triangles(complex), out);
-  int32_t* vertex_of_ball = mlim_allocate(complex->balls->ball_count, sizeof *vertex_of_ball);
-  if (status == MLIM_OK && vertex_of_ball == NULL)
+  mlim_status status = run(r, triangle_body, r->mesh->triangle_count);
+  if (status != MLIM_OK)
   {
-    status = mlim_fail_memory(context, "the mesh");
+    return status;
   }
+  find_balls(r);
+  number_vertices(r);
+  add_volumes(r);
+  status = run(r, vertex_body, r->complex->vertex_count);
   if (status == MLIM_OK)
   {
-    reader r = { .complex = complex, .mesh = out, .vertex_of = vertex_of };
-    read_all(&r, vertex_of_ball);
-    measure_volumes(out, complex->oracle.field);
+    read_curves(r, r->vertex_of_ball);
   }
-  mlim_release(vertex_of_ball);
+  return status;
+}
+
+mlim_status mlim_mesh_read(const mlim_complex* complex, const mlim_boundary* boundary, double done,
+  mlim_context* context, int32_t* vertex_of, mlim_mesh* out)
+{
+  *out = (mlim_mesh){ 0 };
+  const size_t count = mlim_boundary_count(boundary);
+  reader r = { .complex = complex,
+    .context = context,
+    .done = done,
+    .mesh = out,
+    .facets = mlim_allocate(count, sizeof *r.facets),
+    .vertex_of = vertex_of,
+    .vertex_of_ball = mlim_allocate(complex->balls->ball_count, sizeof *r.vertex_of_ball),
+    .volumes = mlim_allocate(count, sizeof *r.volumes) };
+  mlim_status status = r.facets != NULL && r.vertex_of_ball != NULL && r.volumes != NULL
+                         ? allocate_mesh(complex, context, count, out)
+                         : mlim_fail_memory(context, "the mesh");
+  if (status == MLIM_OK)
+  {
+    out->triangle_count = count;
+    mlim_boundary_list(boundary, r.facets);
+    status = read_all(&r);
+  }
+  mlim_release(r.facets);
+  mlim_release(r.vertex_of_ball);
+  mlim_release(r.volumes);
   if (status != MLIM_OK)
   {
     mlim_mesh_free(out);
@@ -270,17 +320,6 @@ mlim_status mlim_mesh_list_failures(
   }
   mesh->certificate.disk_failure_count = count;
   return MLIM_OK;
-}
-
-mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, mlim_mesh* out)
-{
-  *out = (mlim_mesh){ 0 };
-  int32_t* vertex_of = mlim_allocate(complex->vertex_count, sizeof *vertex_of);
-  const mlim_status status = vertex_of != NULL
-                               ? mlim_mesh_read_mapped(complex, context, vertex_of, out)
-                               : mlim_fail_memory(context, "the mesh");
-  mlim_release(vertex_of);
-  return status;
 }
 
 void mlim_mesh_free(mlim_mesh* mesh)

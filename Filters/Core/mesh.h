@@ -2,14 +2,12 @@
 #ifndef mlim_mesh_h
 #define mlim_mesh_h
 
-#include "complex.h"
+#include "boundary.h"
 
-/* Fills everything of the mesh but its report and certificate. */
-mlim_status mlim_mesh_read(const mlim_complex* complex, mlim_context* context, mlim_mesh* out);
-
-/* The same; vertex_of receives the mesh's vertex, or -1, of each of the complex's vertices. */
-mlim_status mlim_mesh_read_mapped(
-  const mlim_complex* complex, mlim_context* context, int32_t* vertex_of, mlim_mesh* out);
+/* Fills everything of the mesh but its report and certificate. vertex_of receives the mesh's vertex, or
+   -1, of each of the complex's vertices; `done` is reported as the share of the certificate's stage. */
+mlim_status mlim_mesh_read(const mlim_complex* complex, const mlim_boundary* boundary, double done,
+  mlim_context* context, int32_t* vertex_of, mlim_mesh* out);
 
 /* MLIM_NODE_... of a vertex, and the number of labels that meet at it, the outside being one. */
 int32_t mlim_mesh_node_type(

@@ -15,58 +15,123 @@ static int32_t bin_of(const mlim_nearest* nearest, double value, int axis)
   return b < 0 ? 0 : b >= nearest->bins[axis] ? nearest->bins[axis] - 1 : (int32_t)b;
 }
 
-typedef struct range
-{
-  int32_t low[3];
-  int32_t high[3];
-} range;
+/* ---- sorting ---- */
 
-static range bins_of_triangle(const mlim_nearest* nearest, size_t t)
+enum
 {
-  const mlim_mesh* mesh = nearest->mesh;
-  range r;
-  for (int k = 0; k < 3; ++k)
-  {
-    double low = INFINITY;
-    double high = -INFINITY;
-    for (size_t j = 0; j < 3; ++j)
-    {
-      const double x = mesh->vertices[3 * (size_t)mesh->triangles[3 * t + j] + (size_t)k];
-      low = mlim_min(low, x);
-      high = mlim_max(high, x);
-    }
-    r.low[k] = bin_of(nearest, low, k);
-    r.high[k] = bin_of(nearest, high, k);
-  }
-  return r;
+  SLABS = 8 /* of bins, sorted for themselves: each looks at the layers of all triangles */
+};
+
+/* Low and high bins that a triangle may touch. */
+typedef struct bin_range
+{
+  int32_t low, high;
+} bin_range;
+
+typedef struct bin_rows
+{
+  bin_range x, y;
+} bin_rows;
+
+typedef struct sorting
+{
+  mlim_nearest* nearest;
+  bin_range* layers; /* of each triangle, along z */
+  bin_rows* ranges;
+  int is_placing;
+} sorting;
+
+static bin_range range_of(const mlim_nearest* nearest, size_t t, int axis)
+{
+  const int32_t* v = nearest->mesh->triangles + 3 * t;
+  const double* points = nearest->mesh->vertices + axis;
+  const double a = points[3 * (size_t)v[0]];
+  const double b = points[3 * (size_t)v[1]];
+  const double c = points[3 * (size_t)v[2]];
+  return (bin_range){ .low = bin_of(nearest, mlim_min(a, mlim_min(b, c)), axis),
+    .high = bin_of(nearest, mlim_max(a, mlim_max(b, c)), axis) };
 }
 
-/* Counts (triangles == NULL) or places the triangles; offsets are two ahead while counting. */
-static void sort_triangles(mlim_nearest* nearest, int is_placing)
+static void range_body(void* data, size_t begin, size_t end)
 {
-  for (size_t t = 0; t < nearest->mesh->triangle_count; ++t)
+  const sorting* s = (const sorting*)data;
+  for (size_t t = begin; t < end; ++t)
   {
-    const range r = bins_of_triangle(nearest, t);
-    for (int32_t z = r.low[2]; z <= r.high[2]; ++z)
+    s->ranges[t].x = range_of(s->nearest, t, 0);
+    s->ranges[t].y = range_of(s->nearest, t, 1);
+    s->layers[t] = range_of(s->nearest, t, 2);
+  }
+}
+
+/* Counts or places a triangle in the bins of some layers; offsets are two ahead while counting. */
+static void sort_triangle(const sorting* s, size_t t, int32_t low, int32_t high)
+{
+  const mlim_nearest* nearest = s->nearest;
+  const bin_rows* r = &s->ranges[t];
+  for (int32_t z = low; z <= high; ++z)
+  {
+    for (int32_t y = r->y.low; y <= r->y.high; ++y)
     {
-      for (int32_t y = r.low[1]; y <= r.high[1]; ++y)
+      const size_t row =
+        (size_t)nearest->bins[0] * ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
+      for (int32_t x = r->x.low; x <= r->x.high; ++x)
       {
-        for (int32_t x = r.low[0]; x <= r.high[0]; ++x)
+        const size_t b = row + (size_t)x;
+        if (s->is_placing)
         {
-          const size_t b = (size_t)x + (size_t)nearest->bins[0] *
-                                         ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
-          if (is_placing)
-          {
-            nearest->triangles[nearest->offsets[b + 1]++] = (int32_t)t;
-          }
-          else
-          {
-            ++nearest->offsets[b + 2];
-          }
+          nearest->triangles[nearest->offsets[b + 1]++] = (int32_t)t;
+        }
+        else
+        {
+          ++nearest->offsets[b + 2];
         }
       }
     }
   }
+}
+
+/* Bins of one layer come before those of the next: slabs of layers do not meet. */
+static void slab_body(void* data, size_t begin, size_t end)
+{
+  const sorting* s = (const sorting*)data;
+  const size_t layers = (size_t)s->nearest->bins[2];
+  const int32_t first = (int32_t)(layers * begin / SLABS);
+  const int32_t last = (int32_t)(layers * end / SLABS) - 1;
+  for (size_t t = 0; t < s->nearest->mesh->triangle_count; ++t)
+  {
+    const bin_range z = s->layers[t];
+    if (z.low <= last && z.high >= first)
+    {
+      sort_triangle(s, t, z.low > first ? z.low : first, z.high < last ? z.high : last);
+    }
+  }
+}
+
+/* Each bin lists its triangles in ascending order. Not 0: out of memory. */
+static int sort_triangles(mlim_nearest* nearest, size_t bin_count, mlim_context* context)
+{
+  const size_t count = nearest->mesh->triangle_count;
+  sorting s = { .nearest = nearest,
+    .layers = mlim_allocate(count, sizeof *s.layers),
+    .ranges = mlim_allocate(count, sizeof *s.ranges) };
+  if (s.layers != NULL && s.ranges != NULL)
+  {
+    mlim_parallel_for(context, count, range_body, &s);
+    mlim_parallel_for(context, SLABS, slab_body, &s);
+    for (size_t b = 0; b < bin_count; ++b)
+    {
+      nearest->offsets[b + 2] += nearest->offsets[b + 1];
+    }
+    nearest->triangles = mlim_allocate(nearest->offsets[bin_count + 1], sizeof *nearest->triangles);
+  }
+  if (nearest->triangles != NULL)
+  {
+    s.is_placing = 1;
+    mlim_parallel_for(context, SLABS, slab_body, &s);
+  }
+  mlim_release(s.layers);
+  mlim_release(s.ranges);
+  return nearest->triangles == NULL;
 }
 
 mlim_status mlim_nearest_create(const mlim_mesh* mesh, const double size[3], double side,
@@ -86,22 +151,11 @@ mlim_status mlim_nearest_create(const mlim_mesh* mesh, const double size[3], dou
     count *= (size_t)out->bins[k];
   }
   out->offsets = mlim_allocate_zeroed(count + 2, sizeof *out->offsets);
-  if (out->offsets == NULL)
-  {
-    return mlim_fail_memory(context, "the search for nearest triangles");
-  }
-  sort_triangles(out, 0);
-  for (size_t b = 0; b < count; ++b)
-  {
-    out->offsets[b + 2] += out->offsets[b + 1];
-  }
-  out->triangles = mlim_allocate(out->offsets[count + 1], sizeof *out->triangles);
-  if (out->triangles == NULL)
+  if (out->offsets == NULL || sort_triangles(out, count, context))
   {
     mlim_nearest_free(out);
     return mlim_fail_memory(context, "the search for nearest triangles");
   }
-  sort_triangles(out, 1);
   return MLIM_OK;
 }
 
@@ -111,6 +165,8 @@ void mlim_nearest_free(mlim_nearest* nearest)
   mlim_release(nearest->triangles);
   *nearest = (mlim_nearest){ 0 };
 }
+
+/* ---- distances ---- */
 
 static double segment_distance_squared(const double p[3], const double a[3], const double b[3])
 {

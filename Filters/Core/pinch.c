@@ -151,13 +151,13 @@ static mlim_status look_at_vertex(pinching* p, int32_t vertex)
 }
 
 mlim_status mlim_pinch_run(
-  mlim_refinement* refinement, mlim_context* context, mlim_balls* out, size_t* count)
+  mlim_refinement* refinement, double done, mlim_context* context, mlim_balls* out, size_t* count)
 {
   mlim_complex* complex = &refinement->complex;
   const mlim_balls* old = complex->balls;
   pinching p = { .refinement = refinement, .context = context };
   *out = (mlim_balls){ 0 };
-  mlim_status status = mlim_disks_settle(refinement, 0, context);
+  mlim_status status = mlim_disks_settle(refinement, done, context);
   if (status != MLIM_OK)
   {
     return status;
@@ -173,7 +173,7 @@ mlim_status mlim_pinch_run(
     status = look_at_vertex(&p, (int32_t)v);
     if (v % LOOK_EVERY == 0 && !status)
     {
-      status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, 0);
+      status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, done);
     }
   }
   if (!status && p.count > 0)

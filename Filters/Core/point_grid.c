@@ -1,5 +1,6 @@
 #include "point_grid.h"
 #include "memory.h"
+#include "vector.h"
 
 #include <assert.h>
 #include <math.h>
@@ -11,7 +12,7 @@ static const double MAX_CUBE = 4e18;
 static int64_t cube_of(const mlim_point_grid* grid, double coordinate)
 {
   const double cube = floor(coordinate / grid->cube_size);
-  return (int64_t)fmin(fmax(cube, -MAX_CUBE), MAX_CUBE);
+  return (int64_t)mlim_min(mlim_max(cube, -MAX_CUBE), MAX_CUBE);
 }
 
 static size_t slot_of(const mlim_point_grid* grid, const int64_t cube[3])

@@ -10,6 +10,12 @@
 /* The loop and this file round a ratio differently, relative. */
 static const double ROUNDING = 1e-9;
 
+enum
+{
+  ITEMS_A_PIECE = 1 << 16, /* between two looks at the host: some milliseconds */
+  BLOCK = 1 << 10          /* vertices whose edges are counted together */
+};
+
 static const double DEGREES = 57.29577951308232; /* in a radian */
 
 static int32_t root_of(int32_t* parent, int32_t k)
@@ -206,17 +212,57 @@ static double angle_between(const double u[3], const double v[3])
   return DEGREES * atan2(sqrt(mlim_dot(n, n)), mlim_dot(u, v));
 }
 
-static void measure_triangle(mlim_mesh* mesh, size_t t, double bound, double* ratio_sum)
+typedef struct triangle_look
 {
-  mlim_report* report = &mesh->report;
+  double angle; /* the smallest; 180 where others of the range are known to have a smaller one */
+  double ratio;
+  int has_ball;
+} triangle_look;
+
+typedef struct triangle_job
+{
+  const mlim_mesh* mesh;
+  size_t first; /* triangle of looks[0] */
+  triangle_look* looks;
+} triangle_job;
+
+typedef struct least_angle
+{
+  double angle;
+  double tangent; /* a little above its tangent; INFINITY: from 90 degrees on */
+} least_angle;
+
+/* The angle between two directions, and *least lowered to it. What is larger than that for certain costs
+   no arc tangent, and counts as 180. */
+static double lower_angle(least_angle* least, const double u[3], const double v[3])
+{
+  double n[3];
+  mlim_cross(u, v, n);
+  const double across = sqrt(mlim_dot(n, n));
+  const double along = mlim_dot(u, v);
+  if (along <= 0 ? least->tangent < INFINITY : across > least->tangent * along)
+  {
+    return 180;
+  }
+  const double angle = DEGREES * atan2(across, along);
+  if (angle < least->angle)
+  {
+    least->angle = angle;
+    least->tangent = along > 0 ? across / along * (1 + ROUNDING) : INFINITY;
+  }
+  return angle;
+}
+
+static void look_at_triangle(
+  const mlim_mesh* mesh, size_t t, least_angle* least, triangle_look* out)
+{
   const int32_t* id = mesh->triangles + 3 * t;
   const double* p[3];
-  int has_ball = 0;
+  *out = (triangle_look){ .angle = 180 };
   for (int k = 0; k < 3; ++k)
   {
     p[k] = mesh->vertices + 3 * (size_t)id[k];
-    const int32_t type = mesh->node_types[id[k]] % MLIM_NODE_ON_BOX;
-    has_ball |= type != MLIM_NODE_INTERFACE;
+    out->has_ball |= mesh->node_types[id[k]] % MLIM_NODE_ON_BOX != MLIM_NODE_INTERFACE;
   }
   for (int k = 0; k < 3; ++k)
   {
@@ -224,13 +270,51 @@ static void measure_triangle(mlim_mesh* mesh, size_t t, double bound, double* ra
     double v[3];
     mlim_subtract(p[(k + 1) % 3], p[k], u);
     mlim_subtract(p[(k + 2) % 3], p[k], v);
-    report->min_angle = mlim_min(report->min_angle, angle_between(u, v));
+    out->angle = mlim_min(out->angle, lower_angle(least, u, v));
   }
-  const double ratio = sqrt(mlim_radius_edge_ratio_squared(p[0], p[1], p[2]));
-  double* worst = has_ball ? &report->max_ball_radius_edge_ratio : &report->max_radius_edge_ratio;
-  *worst = mlim_max(*worst, ratio);
-  report->relabeled_ratio_count += !has_ball && ratio > bound * (1 + ROUNDING);
-  *ratio_sum += ratio;
+  out->ratio = sqrt(mlim_radius_edge_ratio_squared(p[0], p[1], p[2]));
+}
+
+static void triangle_body(void* data, size_t begin, size_t end)
+{
+  const triangle_job* job = (const triangle_job*)data;
+  least_angle least = { .angle = 180, .tangent = INFINITY };
+  for (size_t k = begin; k < end; ++k)
+  {
+    look_at_triangle(job->mesh, job->first + k, &least, &job->looks[k]);
+  }
+}
+
+static void add_look(mlim_report* report, const triangle_look* look, double bound)
+{
+  double* worst =
+    look->has_ball ? &report->max_ball_radius_edge_ratio : &report->max_radius_edge_ratio;
+  report->min_angle = mlim_min(report->min_angle, look->angle);
+  *worst = mlim_max(*worst, look->ratio);
+  report->relabeled_ratio_count += !look->has_ball && look->ratio > bound * (1 + ROUNDING);
+}
+
+/* Piece by piece, so that few looks have to be kept; summed one after the other, whoever took them. */
+static mlim_status measure_triangles(
+  mlim_mesh* mesh, double bound, double done, mlim_context* context, double* ratio_sum)
+{
+  triangle_job job = { .mesh = mesh, .looks = mlim_allocate(ITEMS_A_PIECE, sizeof *job.looks) };
+  mlim_status status =
+    job.looks != NULL ? MLIM_OK : mlim_fail_memory(context, "the shapes of the triangles");
+  for (; job.first < mesh->triangle_count && status == MLIM_OK; job.first += ITEMS_A_PIECE)
+  {
+    const size_t left = mesh->triangle_count - job.first;
+    const size_t count = left < ITEMS_A_PIECE ? left : ITEMS_A_PIECE;
+    mlim_parallel_for(context, count, triangle_body, &job);
+    for (size_t k = 0; k < count; ++k)
+    {
+      add_look(&mesh->report, &job.looks[k], bound);
+      *ratio_sum += job.looks[k].ratio;
+    }
+    status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, done);
+  }
+  mlim_release(job.looks);
+  return status;
 }
 
 /* Direction from an edge into a triangle, perpendicular to the edge. */
@@ -286,7 +370,8 @@ static double dihedral_at(const mlim_mesh* mesh, const mlim_edges* edges, const 
   return end - first > 2 ? smallest_dihedral(mesh, edges, lower, first, end) : 180;
 }
 
-void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound)
+mlim_status mlim_quality_measure(
+  mlim_mesh* mesh, const mlim_edges* edges, double bound, double done, mlim_context* context)
 {
   mlim_report* report = &mesh->report;
   report->min_angle = mesh->triangle_count > 0 ? 180 : 0;
@@ -294,14 +379,11 @@ void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound
   report->max_radius_edge_ratio = 0;
   report->max_ball_radius_edge_ratio = 0;
   double ratio_sum = 0;
-  for (size_t t = 0; t < mesh->triangle_count; ++t)
-  {
-    measure_triangle(mesh, t, bound, &ratio_sum);
-  }
+  const mlim_status status = measure_triangles(mesh, bound, done, context, &ratio_sum);
   report->mean_radius_edge_ratio =
     mesh->triangle_count > 0 ? ratio_sum / (double)mesh->triangle_count : 0;
   /* At contacts sheets touch, at any angle. */
-  for (size_t e = 0; e < mesh->edge_count; ++e)
+  for (size_t e = 0; e < mesh->edge_count && status == MLIM_OK; ++e)
   {
     if (mesh->edge_curves[e] != MLIM_CONTACT)
     {
@@ -309,6 +391,7 @@ void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound
         mlim_min(report->min_dihedral_angle, dihedral_at(mesh, edges, mesh->edges + 2 * e));
     }
   }
+  return status;
 }
 
 /* Balance of one label round an edge: its triangles run both ways equally often. */
@@ -325,24 +408,69 @@ static int balance(
   return sum;
 }
 
-size_t mlim_quality_count_open_edges(const mlim_mesh* mesh, const mlim_edges* edges)
+static int is_open(const mlim_mesh* mesh, const mlim_edges* edges, size_t first, size_t end)
 {
-  size_t count = 0;
-  for (size_t v = 0; v < mesh->vertex_count; ++v)
+  for (size_t k = first; k < end; ++k)
   {
-    size_t end;
-    for (size_t first = edges->offsets[v]; first < edges->offsets[v + 1]; first = end)
+    const int32_t* labels = mesh->triangle_labels + 2 * (size_t)edges->uses[k].triangle;
+    if (balance(mesh, edges, first, end, labels[0]) != 0 ||
+        balance(mesh, edges, first, end, labels[1]) != 0)
     {
-      end = mlim_edges_run_end(edges, (int32_t)v, first);
-      int is_open = 0;
-      for (size_t k = first; k < end && !is_open; ++k)
-      {
-        const int32_t* labels = mesh->triangle_labels + 2 * (size_t)edges->uses[k].triangle;
-        is_open = balance(mesh, edges, first, end, labels[0]) != 0 ||
-                  balance(mesh, edges, first, end, labels[1]) != 0;
-      }
-      count += (size_t)is_open;
+      return 1;
     }
   }
-  return count;
+  return 0;
+}
+
+typedef struct open_job
+{
+  const mlim_mesh* mesh;
+  const mlim_edges* edges;
+  size_t* counts; /* of each block of vertices */
+} open_job;
+
+static void open_body(void* data, size_t begin, size_t end)
+{
+  const open_job* job = (const open_job*)data;
+  for (size_t b = begin; b < end; ++b)
+  {
+    const size_t left = job->mesh->vertex_count - b * BLOCK;
+    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
+    job->counts[b] = 0;
+    for (size_t v = b * BLOCK; v < last; ++v)
+    {
+      size_t run_end;
+      for (size_t first = job->edges->offsets[v]; first < job->edges->offsets[v + 1];
+           first = run_end)
+      {
+        run_end = mlim_edges_run_end(job->edges, (int32_t)v, first);
+        job->counts[b] += (size_t)is_open(job->mesh, job->edges, first, run_end);
+      }
+    }
+  }
+}
+
+mlim_status mlim_quality_count_open_edges(
+  const mlim_mesh* mesh, const mlim_edges* edges, double done, mlim_context* context, size_t* count)
+{
+  const size_t blocks = (mesh->vertex_count + BLOCK - 1) / BLOCK;
+  open_job job = {
+    .mesh = mesh, .edges = edges, .counts = mlim_allocate(blocks, sizeof *job.counts)
+  };
+  const mlim_status status = job.counts == NULL
+                               ? mlim_fail_memory(context, "the open edges")
+                               : mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
+                                                                .body = open_body,
+                                                                .job = &job,
+                                                                .stage = MLIM_STAGE_CERTIFICATE,
+                                                                .from = done,
+                                                                .to = done,
+                                                                .step = ITEMS_A_PIECE / BLOCK });
+  *count = 0;
+  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
+  {
+    *count += job.counts[b];
+  }
+  mlim_release(job.counts);
+  return status;
 }

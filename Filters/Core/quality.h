@@ -15,10 +15,13 @@ mlim_status mlim_quality_settle_edges(
   mlim_mesh* mesh, const mlim_edges* edges, mlim_context* context);
 
 /* Fills the angles and ratios of the report. relabeled_ratio_count receives all triangles without a
-   ball vertex above the bound. */
-void mlim_quality_measure(mlim_mesh* mesh, const mlim_edges* edges, double bound);
+   ball vertex above the bound. `done`, here and below, is reported as the share of the certificate's
+   stage. */
+mlim_status mlim_quality_measure(
+  mlim_mesh* mesh, const mlim_edges* edges, double bound, double done, mlim_context* context);
 
 /* Number of edges round which the boundary of some region does not close. */
-size_t mlim_quality_count_open_edges(const mlim_mesh* mesh, const mlim_edges* edges);
+mlim_status mlim_quality_count_open_edges(const mlim_mesh* mesh, const mlim_edges* edges,
+  double done, mlim_context* context, size_t* count);
 
 #endif

@@ -8,7 +8,7 @@
 
 enum
 {
-  LOOK_EVERY_SAMPLES = 4096 /* samples between two looks at the host: about 20 ms */
+  SAMPLES_A_PIECE = 4096 /* between two looks at the host: about 20 ms */
 };
 
 /* Balls on two curves at distance d may have radii of this times d: just below a half, so that they
@@ -51,6 +51,7 @@ void mlim_radius_map_free(mlim_radius_map* map)
   mlim_release(map->wedges);
   mlim_release(map->ends);
   mlim_release(map->junction_limits);
+  mlim_release(map->is_lowered);
   *map = (mlim_radius_map){ 0 };
 }
 
@@ -62,7 +63,7 @@ static const double* curve_point(const mlim_curves* curves, size_t index)
 static size_t piece_count(const mlim_curves* curves, size_t index, double step)
 {
   const double length = mlim_distance(curve_point(curves, index), curve_point(curves, index + 1));
-  return (size_t)fmax(1, ceil(length / step));
+  return (size_t)mlim_max(ceil(length / step), 1);
 }
 
 static mlim_status allocate_samples(mlim_radius_map* map, double step)
@@ -90,7 +91,9 @@ static mlim_status allocate_samples(mlim_radius_map* map, double step)
   map->wedges = mlim_allocate(map->sample_count, sizeof(double));
   map->ends = mlim_allocate(curves->curve_count, 2 * sizeof(int32_t));
   map->junction_limits = mlim_allocate(curves->junction_count, sizeof(double));
-  return map->points && map->arcs && map->limits && map->wedges && map->ends && map->junction_limits
+  map->is_lowered = mlim_allocate(curves->curve_count, 1);
+  return map->points && map->arcs && map->limits && map->wedges && map->ends &&
+             map->junction_limits && map->is_lowered
            ? MLIM_OK
            : MLIM_OUT_OF_MEMORY;
 }
@@ -121,6 +124,7 @@ static void place_samples(mlim_radius_map* map, double step)
       }
     }
   }
+  memset(map->is_lowered, 1, curves->curve_count);
   for (size_t s = 0; s < map->sample_count; ++s)
   {
     map->limits[s] = map->first_radius;
@@ -181,7 +185,7 @@ static relation relate(const mlim_radius_map* map, size_t curve, double arc, siz
   {
     shortest = fabs(arc - other_arc);
     const double round = length - shortest;
-    shortest = map->ends[2 * curve] < 0 ? fmin(shortest, round) : shortest;
+    shortest = map->ends[2 * curve] < 0 ? mlim_min(shortest, round) : shortest;
     found = shortest > DETOUR * distance ? UNRELATED : IN_LINE;
   }
   for (int e = 0; e < 2; ++e)
@@ -213,7 +217,7 @@ static double distance_to_sample_piece(
   mlim_subtract(point, a, to);
   const double length_squared = mlim_dot(along, along);
   const double t = length_squared > 0 ? mlim_dot(to, along) / length_squared : 0;
-  const double part = fmin(fmax(t, 0), 1);
+  const double part = mlim_min(mlim_max(t, 0), 1);
   mlim_interpolate(a, a + 3, part, nearest);
   *arc = map->arcs[sample] + part * (map->arcs[sample + 1] - map->arcs[sample]);
   return mlim_distance(point, nearest);
@@ -263,7 +267,7 @@ static void limit_sample(
   {
     double arc;
     const double distance = distance_to_sample_piece(map, point, (size_t)s, &arc);
-    const double radius = fmax(DISTANCE_SHARE * distance, map->floor_radius);
+    const double radius = mlim_max(DISTANCE_SHARE * distance, map->floor_radius);
     if (radius >= map->limits[sample])
     {
       continue;
@@ -274,11 +278,32 @@ static void limit_sample(
         map->limits[sample] = radius;
         break;
       case ABREAST_OF_JUNCTION:
-        map->wedges[sample] = fmin(map->wedges[sample], radius);
+        map->wedges[sample] = mlim_min(map->wedges[sample], radius);
         break;
       case IN_LINE:
         break;
     }
+  }
+}
+
+typedef struct limit_job
+{
+  mlim_radius_map* map;
+  const piece_index* index;
+} limit_job;
+
+/* Each sample has limits of its own. */
+static void limit_body(void* data, size_t begin, size_t end)
+{
+  const limit_job* job = (const limit_job*)data;
+  size_t curve = 0;
+  for (size_t s = begin; s < end; ++s)
+  {
+    while (job->map->offsets[curve + 1] <= s)
+    {
+      ++curve;
+    }
+    limit_sample(job->map, job->index, curve, s);
   }
 }
 
@@ -307,9 +332,9 @@ static void limit_by_length(mlim_radius_map* map, size_t curve)
   const double length = curve_length(map, curve);
   const double* first = map->points + 3 * map->offsets[curve];
   const double* last = map->points + 3 * (map->offsets[curve + 1] - 1);
-  const double radius = ends[0] == ends[1]
-                          ? LOOP_SHARE * length
-                          : fmin(LENGTH_SHARE * length, CHORD_SHARE * mlim_distance(first, last));
+  const double radius =
+    ends[0] == ends[1] ? LOOP_SHARE * length
+                       : mlim_min(LENGTH_SHARE * length, CHORD_SHARE * mlim_distance(first, last));
   for (int e = 0; e < 2 && ends[0] >= 0; ++e)
   {
     mlim_radius_map_lower_junction(map, (size_t)ends[e], radius);
@@ -338,15 +363,15 @@ mlim_status mlim_radius_map_create(const mlim_curves* curves, const mlim_options
   for (size_t c = 0; c < curves->curve_count; ++c)
   {
     limit_by_length(&map, c);
-    for (size_t s = map.offsets[c]; s < map.offsets[c + 1]; ++s)
-    {
-      limit_sample(&map, &index, c, s);
-      status = s % LOOK_EVERY_SAMPLES == 0 ? mlim_progress(context, MLIM_STAGE_BALLS, 0) : MLIM_OK;
-      if (status)
-      {
-        goto done;
-      }
-    }
+  }
+  status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = map.sample_count,
+                                          .body = limit_body,
+                                          .job = &(limit_job){ .map = &map, .index = &index },
+                                          .stage = MLIM_STAGE_BALLS,
+                                          .step = SAMPLES_A_PIECE });
+  if (status)
+  {
+    goto done;
   }
   for (size_t j = 0; j < curves->junction_count; ++j)
   {
@@ -367,11 +392,11 @@ static void grade_curve(const double* arcs, double* limits, size_t count)
 {
   for (size_t i = 1; i < count; ++i)
   {
-    limits[i] = fmin(limits[i], limits[i - 1] + GRADE * (arcs[i] - arcs[i - 1]));
+    limits[i] = mlim_min(limits[i], limits[i - 1] + GRADE * (arcs[i] - arcs[i - 1]));
   }
   for (size_t i = count - 1; i > 0; --i)
   {
-    limits[i - 1] = fmin(limits[i - 1], limits[i] + GRADE * (arcs[i] - arcs[i - 1]));
+    limits[i - 1] = mlim_min(limits[i - 1], limits[i] + GRADE * (arcs[i] - arcs[i - 1]));
   }
 }
 
@@ -379,32 +404,50 @@ static void grade_curve(const double* arcs, double* limits, size_t count)
 static int equalise(double* value, double* end)
 {
   const int falls = *end < *value;
-  *value = fmin(*value, *end);
+  *value = mlim_min(*value, *end);
   *end = *value;
   return falls;
 }
 
+/* Grades one curve and the limits of its junctions. Returns whether one of these had to fall. */
+static int grade_with_ends(mlim_radius_map* map, size_t curve)
+{
+  const size_t first = map->offsets[curve];
+  const size_t last = map->offsets[curve + 1] - 1;
+  const int32_t* ends = map->ends + 2 * curve;
+  double closed_limit = map->limits[first];
+  double* values[2] = { ends[0] >= 0 ? map->junction_limits + ends[0] : &closed_limit,
+    ends[0] >= 0 ? map->junction_limits + ends[1] : &closed_limit };
+  map->limits[first] = mlim_min(map->limits[first], *values[0]);
+  map->limits[last] = mlim_min(map->limits[last], *values[1]);
+  grade_curve(map->arcs + first, map->limits + first, last - first + 1);
+  const double graded = map->limits[last];
+  int has_changed = equalise(values[0], map->limits + first);
+  has_changed |= equalise(values[1], map->limits + last);
+  grade_curve(map->arcs + first, map->wedges + first, last - first + 1);
+  map->is_lowered[curve] = map->limits[last] < graded; /* both ends are one place */
+  return has_changed;
+}
+
+/* A graded curve stays so until its own limits fall, or that of a junction. */
+static int is_graded(const mlim_radius_map* map, size_t curve)
+{
+  const int32_t* ends = map->ends + 2 * curve;
+  return !map->is_lowered[curve] &&
+         (ends[0] < 0 ||
+           (map->limits[map->offsets[curve]] <= map->junction_limits[ends[0]] &&
+             map->limits[map->offsets[curve + 1] - 1] <= map->junction_limits[ends[1]]));
+}
+
 void mlim_radius_map_grade(mlim_radius_map* map)
 {
-  const size_t curve_count = map->curves->curve_count;
   int has_changed = 1;
   for (int round = 0; round < MAX_GRADE_ROUNDS && has_changed; ++round)
   {
     has_changed = 0;
-    for (size_t c = 0; c < curve_count; ++c)
+    for (size_t c = 0; c < map->curves->curve_count; ++c)
     {
-      const size_t first = map->offsets[c];
-      const size_t last = map->offsets[c + 1] - 1;
-      const int32_t* ends = map->ends + 2 * c;
-      double closed_limit = map->limits[first];
-      double* values[2] = { ends[0] >= 0 ? map->junction_limits + ends[0] : &closed_limit,
-        ends[0] >= 0 ? map->junction_limits + ends[1] : &closed_limit };
-      map->limits[first] = fmin(map->limits[first], *values[0]);
-      map->limits[last] = fmin(map->limits[last], *values[1]);
-      grade_curve(map->arcs + first, map->limits + first, last - first + 1);
-      has_changed |= equalise(values[0], map->limits + first);
-      has_changed |= equalise(values[1], map->limits + last);
-      grade_curve(map->arcs + first, map->wedges + first, last - first + 1);
+      has_changed |= !is_graded(map, c) && grade_with_ends(map, c);
     }
   }
 }
@@ -427,7 +470,7 @@ static size_t find_sample(const mlim_radius_map* map, size_t curve, double arc, 
     }
   }
   const double length = map->arcs[high] - map->arcs[low];
-  *part = length > 0 ? fmin(fmax((arc - map->arcs[low]) / length, 0), 1) : 0;
+  *part = length > 0 ? mlim_min(mlim_max((arc - map->arcs[low]) / length, 0), 1) : 0;
   return low;
 }
 
@@ -435,9 +478,9 @@ double mlim_radius_map_radius(const mlim_radius_map* map, size_t curve, double a
 {
   double part;
   const size_t s = find_sample(map, curve, arc, &part);
-  const double low = fmin(map->limits[s], map->wedges[s]);
-  const double high = fmin(map->limits[s + 1], map->wedges[s + 1]);
-  return fmax(low + part * (high - low), map->floor_radius);
+  const double low = mlim_min(map->limits[s], map->wedges[s]);
+  const double high = mlim_min(map->limits[s + 1], map->wedges[s + 1]);
+  return mlim_max(low + part * (high - low), map->floor_radius);
 }
 
 void mlim_radius_map_point(const mlim_radius_map* map, size_t curve, double arc, double out[3])
@@ -453,20 +496,21 @@ int mlim_radius_map_lower(
   double part;
   const size_t s = find_sample(map, curve, arc, &part);
   double* limits = which == MLIM_LIMIT_WEDGE ? map->wedges : map->limits;
-  const double limit = fmax(radius, map->floor_radius);
+  const double limit = mlim_max(radius, map->floor_radius);
   int has_changed = 0;
   for (size_t i = s; i <= s + 1; ++i)
   {
     has_changed |= limit < limits[i];
-    limits[i] = fmin(limits[i], limit);
+    limits[i] = mlim_min(limits[i], limit);
   }
+  map->is_lowered[curve] |= (unsigned char)has_changed;
   return has_changed;
 }
 
 int mlim_radius_map_lower_junction(mlim_radius_map* map, size_t junction, double radius)
 {
-  const double limit = fmax(radius, map->floor_radius);
+  const double limit = mlim_max(radius, map->floor_radius);
   const int has_changed = limit < map->junction_limits[junction];
-  map->junction_limits[junction] = fmin(map->junction_limits[junction], limit);
+  map->junction_limits[junction] = mlim_min(map->junction_limits[junction], limit);
   return has_changed;
 }

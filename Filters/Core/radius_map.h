@@ -20,6 +20,7 @@ typedef struct mlim_radius_map
                        the junction's own ball stays large */
   int32_t* ends;   /* 2 per curve: its junctions; -1 for a closed curve without */
   double* junction_limits;
+  unsigned char* is_lowered; /* a curve: its own limits have fallen since it was graded */
 } mlim_radius_map;
 
 /* Looks at the host between samples. */

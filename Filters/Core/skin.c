@@ -1,8 +1,11 @@
 #include "skin.h"
 
+#include "ahead.h"
 #include "memory.h"
 #include "status.h"
 #include "vector.h"
+
+#include <string.h>
 
 /* No more blocks than this along an axis: they are there to save time, not to be fine. */
 static const double MAX_BLOCKS = 128;
@@ -108,30 +111,110 @@ static int is_boundary(const mlim_complex* complex, const mlim_facet* facet)
   return cell->label != complex->cells[cell->neighbors[facet->index]].label;
 }
 
-mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks,
+enum
+{
+  BLOCK = 1 << 12,           /* records whose triangles follow each other */
+  VERTICES_A_PIECE = 1 << 17 /* between two looks at the host: some milliseconds */
+};
+
+typedef struct skin_job
+{
+  const mlim_complex* complex;
+  const mlim_skin_blocks* blocks;
+  mlim_mesh* mesh;
+  size_t* counts; /* triangles of each block of records, at the block's place in the mesh */
+} skin_job;
+
+static void vertex_body(void* data, size_t begin, size_t end)
+{
+  const skin_job* job = (const skin_job*)data;
+  for (size_t v = begin; v < end; ++v)
+  {
+    mlim_copy(job->complex->vertices[v].point, job->mesh->vertices + 3 * v);
+  }
+}
+
+static void facet_body(void* data, size_t begin, size_t end)
+{
+  const skin_job* job = (const skin_job*)data;
+  const mlim_complex* complex = job->complex;
+  for (size_t b = begin; b < end; ++b)
+  {
+    const size_t left = complex->facet_count - b * BLOCK;
+    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
+    size_t count = 0;
+    for (size_t f = b * BLOCK; f < last; ++f)
+    {
+      mlim_ahead_of_record(complex, f, last);
+      const mlim_facet* facet = &complex->facets[f];
+      int32_t* triangle = job->mesh->triangles + 3 * (b * BLOCK + count);
+      if (is_boundary(complex, facet))
+      {
+        mlim_complex_facet_vertices(complex, facet->cell, facet->index, triangle);
+        count += job->blocks->is_near == NULL || reaches(job->blocks, complex, triangle);
+      }
+    }
+    job->counts[b] = count;
+  }
+}
+
+/* Closes the gaps between the blocks' triangles. */
+static void close_up(const skin_job* job, size_t block_count)
+{
+  int32_t* triangles = job->mesh->triangles;
+  size_t count = 0;
+  for (size_t b = 0; b < block_count; ++b)
+  {
+    memmove(
+      triangles + 3 * count, triangles + 3 * b * BLOCK, 3 * job->counts[b] * sizeof *triangles);
+    count += job->counts[b];
+  }
+  job->mesh->triangle_count = count;
+}
+
+static mlim_status read_all(const skin_job* job, double done, mlim_context* context)
+{
+  const size_t block_count = (job->complex->facet_count + BLOCK - 1) / BLOCK;
+  mlim_stage_work work = { .count = job->complex->vertex_count,
+    .body = vertex_body,
+    .job = (void*)job,
+    .stage = MLIM_STAGE_SURFACE,
+    .from = done,
+    .to = done,
+    .step = VERTICES_A_PIECE };
+  mlim_status status = mlim_parallel_stage(context, &work);
+  if (status == MLIM_OK)
+  {
+    work.count = block_count;
+    work.body = facet_body;
+    work.step = VERTICES_A_PIECE / BLOCK;
+    status = mlim_parallel_stage(context, &work);
+  }
+  if (status == MLIM_OK)
+  {
+    close_up(job, block_count);
+  }
+  return status;
+}
+
+mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
   mlim_context* context, mlim_mesh* out)
 {
   *out = (mlim_mesh){ .vertex_count = complex->vertex_count };
   out->vertices = mlim_allocate(3 * complex->vertex_count, sizeof *out->vertices);
   out->triangles = mlim_allocate(3 * complex->facet_count, sizeof *out->triangles);
-  if (out->vertices == NULL || out->triangles == NULL)
+  const skin_job job = { .complex = complex,
+    .blocks = blocks,
+    .mesh = out,
+    .counts = mlim_allocate(complex->facet_count / BLOCK + 1, sizeof *job.counts) };
+  const mlim_status status =
+    out->vertices != NULL && out->triangles != NULL && job.counts != NULL
+      ? read_all(&job, done, context)
+      : mlim_fail_memory(context, "the triangles near the grid's crossings");
+  mlim_release(job.counts);
+  if (status != MLIM_OK)
   {
     mlim_mesh_free(out);
-    return mlim_fail_memory(context, "the triangles near the grid's crossings");
   }
-  for (size_t v = 0; v < complex->vertex_count; ++v)
-  {
-    mlim_copy(complex->vertices[v].point, out->vertices + 3 * v);
-  }
-  for (size_t f = 1; f < complex->facet_count; ++f)
-  {
-    const mlim_facet* facet = &complex->facets[f];
-    int32_t* triangle = out->triangles + 3 * out->triangle_count;
-    if (is_boundary(complex, facet))
-    {
-      mlim_complex_facet_vertices(complex, facet->cell, facet->index, triangle);
-      out->triangle_count += blocks->is_near == NULL || reaches(blocks, complex, triangle);
-    }
-  }
-  return MLIM_OK;
+  return status;
 }

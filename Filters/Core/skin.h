@@ -20,8 +20,8 @@ void mlim_skin_blocks_free(mlim_skin_blocks* blocks);
 void mlim_skin_blocks_add(mlim_skin_blocks* blocks, const double point[3]);
 
 /* The triangles that reach into the blocks. Vertices have the complex's ids; only `vertices` and
-   `triangles` of the mesh are set. */
-mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks,
+   `triangles` of the mesh are set. `done` is reported as the share of the surface's stage. */
+mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
   mlim_context* context, mlim_mesh* out);
 
 #endif

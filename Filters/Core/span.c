@@ -1,5 +1,6 @@
 #include "span.h"
 #include "memory.h"
+#include "vector.h"
 
 #include <math.h>
 
@@ -92,7 +93,7 @@ static mlim_status place_balls(
   const mlim_status status = reserve(cover, interval_count + 1);
   const double* sums = cover->sums;
   const double share = sums[span->step_count] / (double)interval_count;
-  const double shrink = fmin(1, CROWDED_RADIUS * share);
+  const double shrink = mlim_min(1, CROWDED_RADIUS * share);
   const double step = (part->end - part->begin) / (double)span->step_count;
   cover->count = status ? 0 : interval_count + (span->is_closed ? 0 : 1);
   size_t at = 0;
@@ -104,8 +105,9 @@ static mlim_status place_balls(
       ++at;
     }
     const double rest = (target - sums[at]) / (sums[at + 1] - sums[at]);
-    cover->arcs[i] =
-      i == interval_count ? part->end : part->begin + ((double)at + fmin(fmax(rest, 0), 1)) * step;
+    cover->arcs[i] = i == interval_count
+                       ? part->end
+                       : part->begin + ((double)at + mlim_min(mlim_max(rest, 0), 1)) * step;
     cover->radii[i] = shrink * span->radius(span->user, cover->arcs[i]);
   }
   return status;
@@ -119,9 +121,9 @@ static void limit_by_neighbours(const mlim_span* span, mlim_span_cover* cover)
     const double before = i > 0 ? cover->arcs[i - 1] : 0;
     const double after = i + 1 < cover->count ? cover->arcs[i + 1] : span->length;
     const double gap = i > 0 || !span->is_closed
-                         ? fmin(cover->arcs[i] - before, after - cover->arcs[i])
+                         ? mlim_min(cover->arcs[i] - before, after - cover->arcs[i])
                          : after - cover->arcs[i];
-    cover->radii[i] = fmin(cover->radii[i], NEIGHBOUR_SHARE * gap);
+    cover->radii[i] = mlim_min(cover->radii[i], NEIGHBOUR_SHARE * gap);
   }
 }
 
@@ -135,10 +137,10 @@ static mlim_status place_single(const mlim_span* span, mlim_span_cover* cover)
   if (!status)
   {
     const double wanted = span->radius(span->user, arc);
-    const double radius = fmax(fmin(wanted, SINGLE_RADIUS * gap), LEAST_SINGLE * gap);
+    const double radius = mlim_max(mlim_min(wanted, SINGLE_RADIUS * gap), LEAST_SINGLE * gap);
     cover->arcs[0] = arc;
-    cover->radii[0] = fmin(radius, SINGLE_SHARE * fmin(arc, span->length - arc));
-    cover->radii[0] = fmax(cover->radii[0], LEAST_RADIUS * span->length);
+    cover->radii[0] = mlim_min(radius, SINGLE_SHARE * mlim_min(arc, span->length - arc));
+    cover->radii[0] = mlim_max(cover->radii[0], LEAST_RADIUS * span->length);
   }
   return status;
 }
@@ -166,7 +168,7 @@ mlim_status mlim_span_cover_make(const mlim_span* span, mlim_span_cover* cover)
     return place_single(span, cover);
   }
   const size_t least = span->is_closed ? span->min_count : span->min_count - 1;
-  const size_t count = (size_t)fmax(1, ceil(length));
+  const size_t count = (size_t)mlim_max(1, ceil(length));
   const mlim_status status = place_balls(span, &part, count < least ? least : count, cover);
   limit_by_neighbours(span, cover);
   return status;

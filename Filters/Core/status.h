@@ -29,6 +29,8 @@ typedef struct mlim_stage_work
   void* job;
   mlim_stage stage;
   double from, to;
+  size_t
+    step; /* items of a piece, which have to take less than a tenth of a second; 0: a 32nd of all */
 } mlim_stage_work;
 
 mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* work);

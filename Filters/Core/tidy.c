@@ -1,5 +1,6 @@
 #include "tidy.h"
 
+#include "ahead.h"
 #include "memory.h"
 #include "refine_disks.h"
 #include "sides.h"
@@ -16,7 +17,8 @@ enum
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
   SHAPE_SWEEPS = 3,
-  LOOK_EVERY = 65536, /* cells between two looks at the host */
+  BLOCK = 4096,       /* cells whose strays are counted together */
+  LOOK_EVERY = 65536, /* cells between two looks at the host: some milliseconds */
   MAX_STEPS = 256     /* vertices that one failed vertex may lead to */
 };
 
@@ -119,6 +121,174 @@ static int32_t label_beyond(const mlim_complex* complex, int32_t id, int index)
                                                    : cell->label;
 }
 
+/* ---- all facets between two labels at a time ---- */
+
+enum
+{
+  STRAYS = 15,  /* bit k: facet k has a vertex that is not on its sheet */
+  BAD_SHIFT = 4 /* bit 4 + k: its triangle is misshapen, or off its interface */
+};
+
+typedef struct tidier
+{
+  mlim_refinement* refinement;
+  mlim_boundary* boundary;
+  mlim_context* context;
+  double done;          /* of the stage */
+  unsigned char* looks; /* what is wrong with the facets of each cell */
+  mlim_status status;   /* of the checks inside the costs */
+  mlim_star star;       /* of the failed vertex */
+  mlim_star check;      /* of its neighbours */
+  int32_t part[MAX_PART];
+  size_t part_count;
+  int32_t vertices[4 * MAX_PART];
+  size_t vertex_count;
+  int32_t seen[MAX_SEEN];
+  size_t seen_count;
+  int32_t pending[MAX_STEPS];
+  int32_t* bad; /* cells with a bad triangle */
+  size_t bad_count, bad_capacity;
+} tidier;
+
+/* Verification has looked at nearly all facets already, and from as far unless a bound is tighter. Not to
+   be asked once labels have changed: they may have changed sides. */
+static int is_known_to_be_seen(const mlim_refinement* r, const mlim_cell* cell, int index)
+{
+  const mlim_complex* complex = &r->complex;
+  const int32_t other = complex->cells[cell->neighbors[index]].label;
+  const mlim_facet* facet = &complex->facets[cell->facets[index]];
+  return facet->is_alive && facet->is_settled &&
+         facet->sheet.low == (cell->label < other ? cell->label : other) &&
+         facet->sheet.high == (cell->label < other ? other : cell->label) &&
+         !(mlim_criteria_distance(complex, r->options, &facet->sheet) < r->options->facet_distance);
+}
+
+/* As the bits of facet 0. is_first_look: no label has changed yet. */
+static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index, int is_first_look)
+{
+  const mlim_complex* complex = &r->complex;
+  const mlim_cell* cell = &complex->cells[id];
+  const int32_t other = complex->cells[cell->neighbors[index]].label;
+  const int is_stray = stray_count(complex, cell, index, cell->label, other) > 0;
+  const int is_bad =
+    is_misshapen(r, cell, index) ||
+    (!(is_first_look && is_known_to_be_seen(r, cell, index)) &&
+      !mlim_sides_are_seen(complex, id, index, cell->label, other, r->options->facet_distance));
+  return (unsigned)is_stray | (unsigned)is_bad << BAD_SHIFT;
+}
+
+static void ask_ahead(const tidier* t, size_t cell)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  const unsigned sides = t->boundary->sides[cell] >> MLIM_FIRST_SHIFT;
+  for (int k = 0; sides >> k != 0; ++k)
+  {
+    if (sides >> k & 1u)
+    {
+      mlim_ahead_of_facet(complex, (int32_t)cell, k);
+      mlim_ahead_ask(&complex->facets[complex->cells[cell].facets[k]]);
+    }
+  }
+}
+
+/* Looks at each facet from its cell of the lower id. */
+static void look_body(void* data, size_t begin, size_t end)
+{
+  const tidier* t = (const tidier*)data;
+  for (size_t c = begin; c < end; ++c)
+  {
+    const unsigned sides = t->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    unsigned looks = 0;
+    if (c + 2 * MLIM_CELLS_AHEAD < end)
+    {
+      mlim_ahead_ask(&t->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
+      ask_ahead(t, c + MLIM_CELLS_AHEAD);
+    }
+    for (int k = 0; sides >> k != 0; ++k)
+    {
+      looks |= sides >> k & 1u ? look_at_facet(t->refinement, (int32_t)c, k, 1) << k : 0;
+    }
+    t->looks[c] = (unsigned char)looks;
+  }
+}
+
+/* What is wrong with a facet, told to one of its cells. */
+static void note(tidier* t, int32_t cell, int index, unsigned look)
+{
+  const unsigned mask = (1u | 1u << BAD_SHIFT) << index;
+  t->looks[cell] = (unsigned char)((t->looks[cell] & ~mask) | look << index);
+}
+
+static int index_of(const mlim_cell* cell, int32_t neighbor)
+{
+  int k = 0;
+  while (k < 3 && cell->neighbors[k] != neighbor)
+  {
+    ++k;
+  }
+  return k;
+}
+
+/* The facets' cells of the higher ids are told too: there are few with something wrong. */
+static void spread_looks(tidier* t)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    for (int k = 0; k < 4 && t->looks[c] != 0; ++k)
+    {
+      const unsigned look = t->looks[c] >> k & (1u | 1u << BAD_SHIFT);
+      if (look != 0 && t->boundary->sides[c] >> (MLIM_FIRST_SHIFT + k) & 1u)
+      {
+        const int32_t other = complex->cells[c].neighbors[k];
+        note(t, other, index_of(&complex->cells[other], (int32_t)c), look);
+      }
+    }
+  }
+}
+
+static mlim_status look_at_all(tidier* t)
+{
+  const size_t count = t->refinement->complex.cell_count;
+  t->looks = mlim_allocate(count, 1);
+  if (t->looks == NULL)
+  {
+    return mlim_fail_memory(t->context, "mending the topology");
+  }
+  const mlim_status status = mlim_parallel_stage(t->context, &(mlim_stage_work){ .count = count,
+                                                               .body = look_body,
+                                                               .job = t,
+                                                               .stage = MLIM_STAGE_CERTIFICATE,
+                                                               .from = t->done,
+                                                               .to = t->done,
+                                                               .step = LOOK_EVERY });
+  if (status == MLIM_OK)
+  {
+    spread_looks(t);
+  }
+  return status;
+}
+
+/* A cell has a new label. */
+static void look_again(tidier* t, int32_t id)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  const mlim_cell* cell = &complex->cells[id];
+  mlim_boundary_update(t->boundary, complex, id);
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t other = cell->neighbors[k];
+    const int back = index_of(&complex->cells[other], id);
+    const unsigned look = cell->label == complex->cells[other].label ? 0
+                          : id < other ? look_at_facet(t->refinement, id, k, 0)
+                                       : look_at_facet(t->refinement, other, back, 0);
+    note(t, id, k, look);
+    note(t, other, back, look);
+  }
+}
+
+/* ---- strays ---- */
+
 /* The label for a cell that leaves the fewest strays, among its neighbours', its vertices' and its own. */
 static int32_t best_label(const mlim_complex* complex, int32_t id)
 {
@@ -146,8 +316,9 @@ static int32_t best_label(const mlim_complex* complex, int32_t id)
 
 /* Mends one cell, then its neighbours as far as the change reaches. Each change lowers the number of
    strays, so this ends; what a full stack leaves out stays as it is. */
-static size_t mend_strays_from(mlim_complex* complex, int32_t first)
+static size_t mend_strays_from(tidier* t, int32_t first)
 {
+  mlim_complex* complex = &t->refinement->complex;
   int32_t stack[MAX_STACK];
   size_t count = 0;
   size_t changed = 0;
@@ -156,7 +327,7 @@ static size_t mend_strays_from(mlim_complex* complex, int32_t first)
   {
     const int32_t id = stack[--count];
     mlim_cell* cell = &complex->cells[id];
-    if (is_frozen(complex, cell) || cell_strays(complex, id, cell->label) == 0)
+    if (!(t->looks[id] & STRAYS) || is_frozen(complex, cell))
     {
       continue;
     }
@@ -167,6 +338,7 @@ static size_t mend_strays_from(mlim_complex* complex, int32_t first)
     }
     cell->label = label;
     mlim_complex_touch_cell(complex, id);
+    look_again(t, id);
     ++changed;
     for (int k = 0; k < 4 && count < MAX_STACK; ++k)
     {
@@ -176,57 +348,85 @@ static size_t mend_strays_from(mlim_complex* complex, int32_t first)
   return changed;
 }
 
-static size_t mend_strays(mlim_complex* complex)
+static size_t mend_strays(tidier* t)
 {
   size_t changed = 0;
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
   {
-    if (complex->cells[c].vertices[0] >= 0)
-    {
-      changed += mend_strays_from(complex, (int32_t)c);
-    }
+    changed += t->looks[c] & STRAYS ? mend_strays_from(t, (int32_t)c) : 0;
   }
   return changed;
 }
 
-size_t mlim_tidy_count_strays(const mlim_complex* complex)
+static size_t count_strays(const tidier* t)
 {
   size_t count = 0;
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
   {
-    const mlim_cell* cell = &complex->cells[c];
-    for (int k = 0; k < 4 && cell->vertices[0] >= 0; ++k)
+    unsigned bits = t->looks[c] & STRAYS & t->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    for (; bits != 0; bits &= bits - 1)
     {
-      const int32_t other = cell->neighbors[k];
-      if (other > (int32_t)c)
-      {
-        count += stray_count(complex, cell, k, cell->label, complex->cells[other].label) > 0;
-      }
+      ++count;
     }
   }
   return count;
 }
 
-/* ---- stars that are no disks ---- */
-
-typedef struct tidier
+typedef struct stray_job
 {
-  mlim_refinement* refinement;
-  mlim_context* context;
-  mlim_status status; /* of the checks inside the costs */
-  mlim_star star;     /* of the failed vertex */
-  mlim_star check;    /* of its neighbours */
-  int32_t part[MAX_PART];
-  int32_t old_labels[MAX_PART];
-  size_t part_count;
-  int32_t vertices[4 * MAX_PART];
-  size_t vertex_count;
-  int32_t seen[MAX_SEEN];
-  size_t seen_count;
-  int32_t pending[MAX_STEPS];
-  int32_t* bad; /* cells with a bad triangle */
-  size_t bad_count, bad_capacity;
-} tidier;
+  const mlim_complex* complex;
+  const mlim_boundary* boundary;
+  size_t* counts; /* of each block of cells */
+} stray_job;
+
+static void stray_body(void* data, size_t begin, size_t end)
+{
+  const stray_job* job = (const stray_job*)data;
+  const mlim_complex* complex = job->complex;
+  for (size_t b = begin; b < end; ++b)
+  {
+    const size_t left = complex->cell_count - b * BLOCK;
+    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
+    job->counts[b] = 0;
+    for (size_t c = b * BLOCK; c < last; ++c)
+    {
+      const mlim_cell* cell = &complex->cells[c];
+      const unsigned sides = job->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+      for (int k = 0; sides >> k != 0; ++k)
+      {
+        job->counts[b] += sides >> k & 1u && stray_count(complex, cell, k, cell->label,
+                                               complex->cells[cell->neighbors[k]].label) > 0;
+      }
+    }
+  }
+}
+
+mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
+  double done, mlim_context* context, size_t* count)
+{
+  const size_t blocks = (complex->cell_count + BLOCK - 1) / BLOCK;
+  const stray_job job = {
+    .complex = complex, .boundary = boundary, .counts = mlim_allocate(blocks, sizeof *job.counts)
+  };
+  const mlim_status status = job.counts == NULL
+                               ? mlim_fail_memory(context, "mending the topology")
+                               : mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
+                                                                .body = stray_body,
+                                                                .job = (void*)&job,
+                                                                .stage = MLIM_STAGE_CERTIFICATE,
+                                                                .from = done,
+                                                                .to = done,
+                                                                .step = LOOK_EVERY / BLOCK });
+  *count = 0;
+  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
+  {
+    *count += job.counts[b];
+  }
+  mlim_release(job.counts);
+  return status;
+}
+
+/* ---- stars that are no disks ---- */
 
 static int fails(tidier* t, int32_t vertex)
 {
@@ -369,6 +569,7 @@ static size_t mend_part(tidier* t)
   for (size_t p = 0; p < t->part_count && best != own; ++p)
   {
     mlim_complex_touch_cell(complex, t->part[p]);
+    look_again(t, t->part[p]);
   }
   return best != own ? t->part_count : 0;
 }
@@ -442,7 +643,7 @@ static mlim_status mend_from(tidier* t, int32_t vertex, size_t* changed)
 static mlim_status mend_disks(tidier* t, size_t* changed)
 {
   const mlim_complex* complex = &t->refinement->complex;
-  mlim_status status = mlim_disks_settle(t->refinement, 0, t->context);
+  mlim_status status = mlim_disks_settle(t->refinement, t->done, t->context);
   for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count && status == MLIM_OK; ++v)
   {
     if (complex->vertices[v].is_broken || complex->vertices[v].is_dirty)
@@ -451,7 +652,7 @@ static mlim_status mend_disks(tidier* t, size_t* changed)
     }
     if (status == MLIM_OK && v % 1024 == 0)
     {
-      status = mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, 0);
+      status = mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, t->done);
     }
   }
   return status;
@@ -482,18 +683,16 @@ static size_t mend_shape(tidier* t, int32_t id)
 static int is_bad(const tidier* t, int32_t id)
 {
   const mlim_cell* cell = &t->refinement->complex.cells[id];
-  return cell->vertices[0] >= 0 && !is_frozen(&t->refinement->complex, cell) &&
+  return !is_frozen(&t->refinement->complex, cell) &&
          (cell_misshapen(t->refinement, id) > 0 || cell_unseen(t->refinement, id) > 0);
 }
 
-/* Lists the cells with a bad triangle. */
-static mlim_status find_bad(tidier* t)
+/* Lists the cells with a bad triangle, also those that have to keep their label. */
+static mlim_status list_bad(tidier* t)
 {
-  const mlim_complex* complex = &t->refinement->complex;
-  mlim_status status = MLIM_OK;
-  for (size_t c = 0; c < complex->cell_count && status == MLIM_OK; ++c)
+  for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
   {
-    if (is_bad(t, (int32_t)c))
+    if (t->looks[c] >> BAD_SHIFT != 0)
     {
       if (mlim_reserve(&t->bad, &t->bad_capacity, t->bad_count + 1, sizeof *t->bad))
       {
@@ -501,18 +700,14 @@ static mlim_status find_bad(tidier* t)
       }
       t->bad[t->bad_count++] = (int32_t)c;
     }
-    if (c % LOOK_EVERY == 0)
-    {
-      status = mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, 0);
-    }
   }
-  return status;
+  return mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, t->done);
 }
 
 /* Bad triangles, some of which the changes above have brought to light: other labels may hide them. */
 static mlim_status mend_shapes(tidier* t, size_t* changed)
 {
-  mlim_status status = find_bad(t);
+  mlim_status status = list_bad(t);
   for (int sweep = 0; sweep < SHAPE_SWEEPS && status == MLIM_OK; ++sweep)
   {
     for (size_t k = 0; k < t->bad_count && status == MLIM_OK; ++k)
@@ -524,22 +719,31 @@ static mlim_status mend_shapes(tidier* t, size_t* changed)
   return status;
 }
 
-mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_context* context, size_t* count)
+mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, double done,
+  mlim_context* context, size_t* count, size_t* stray_count)
 {
-  *count = mend_strays(&refinement->complex);
   tidier* t = mlim_allocate_zeroed(1, sizeof *t);
   if (t == NULL)
   {
     return mlim_fail_memory(context, "mending the topology");
   }
-  t->refinement = refinement;
-  t->context = context;
-  size_t changed = 0;
-  mlim_status status = mend_disks(t, &changed);
-  status = status == MLIM_OK ? mend_shapes(t, &changed) : status;
-  *count += changed;
+  *t = (tidier){ .refinement = refinement, .boundary = boundary, .context = context, .done = done };
+  *count = 0;
+  *stray_count = 0;
+  mlim_status status = look_at_all(t);
+  if (status == MLIM_OK)
+  {
+    *count = mend_strays(t);
+    status = mend_disks(t, count);
+  }
+  status = status == MLIM_OK ? mend_shapes(t, count) : status;
+  if (status == MLIM_OK)
+  {
+    *stray_count = count_strays(t);
+  }
   mlim_star_free(&t->star);
   mlim_star_free(&t->check);
+  mlim_release(t->looks);
   mlim_release(t->bad);
   mlim_release(t);
   return status;

@@ -5,12 +5,17 @@
 #ifndef mlim_tidy_h
 #define mlim_tidy_h
 
+#include "boundary.h"
 #include "refine.h"
 
-/* *count: cells whose label was changed. */
-mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_context* context, size_t* count);
+/* The boundary follows the labels. *count: cells whose label was changed; *stray_count: facets between two
+   labels of which a vertex is not on their sheet, all the same. `done`, here and below, is reported as the
+   share of the certificate's stage. */
+mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, double done,
+  mlim_context* context, size_t* count, size_t* stray_count);
 
-/* Facets between two labels of which a vertex is not on their sheet. */
-size_t mlim_tidy_count_strays(const mlim_complex* complex);
+/* That number again: once vertices have become others. */
+mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
+  double done, mlim_context* context, size_t* count);
 
 #endif

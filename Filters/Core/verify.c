@@ -1,5 +1,6 @@
 #include "verify.h"
 
+#include "ahead.h"
 #include "certificate.h"
 #include "crossings.h"
 #include "memory.h"
@@ -30,7 +31,7 @@ static const double FAR_SHARE = 0.005;
 enum
 {
   FAR_ROUNDS = 4,    /* the later ones find nearly nothing */
-  LOOK_EVERY = 65536 /* facets between two reports */
+  LOOK_EVERY = 65536 /* facets between two reports: some milliseconds */
 };
 
 /* ---- far crossings ---- */
@@ -198,7 +199,8 @@ static mlim_status read_skin(const mlim_verification* v, mlim_context* context, 
       }
     }
   }
-  const mlim_status status = mlim_skin_read(complex, &blocks, context, out);
+  const mlim_status status =
+    mlim_skin_read(complex, &blocks, v->refinement->progress, context, out);
   mlim_skin_blocks_free(&blocks);
   return status;
 }
@@ -264,28 +266,50 @@ static mlim_status look_for_far(mlim_verification* v, mlim_context* context, siz
 
 /* The height of the crossing says nothing about the rest of the facet: a bump of the interface may
    leave it between two places of one label. Nor does it say how far the other sheet of a film is. */
+static int is_right(const mlim_refinement* r, const mlim_facet* facet)
+{
+  const mlim_complex* complex = &r->complex;
+  const mlim_cell* cell = &complex->cells[facet->cell];
+  const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
+  return cell->label == other ||
+         (mlim_sides_are_wide(complex, facet) &&
+           mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label, other,
+             mlim_criteria_distance(complex, r->options, &facet->sheet)));
+}
+
+static void side_body(void* data, size_t begin, size_t end)
+{
+  mlim_refinement* r = (mlim_refinement*)data;
+  for (size_t f = begin; f < end; ++f)
+  {
+    mlim_facet* facet = &r->complex.facets[f];
+    mlim_ahead_of_record(&r->complex, f, end);
+    if (facet->is_alive && !facet->is_settled)
+    {
+      facet->is_settled = (unsigned char)is_right(r, facet);
+    }
+  }
+}
+
 static mlim_status look_for_sides(const mlim_verification* v, mlim_context* context, size_t* count)
 {
   mlim_refinement* r = v->refinement;
   const mlim_complex* complex = &r->complex;
-  mlim_status status = MLIM_OK;
+  mlim_status status =
+    mlim_parallel_stage(context, &(mlim_stage_work){ .count = complex->facet_count,
+                                   .body = side_body,
+                                   .job = r,
+                                   .stage = MLIM_STAGE_SURFACE,
+                                   .from = r->progress,
+                                   .to = r->progress,
+                                   .step = LOOK_EVERY });
   for (size_t f = 1; f < complex->facet_count && status == MLIM_OK; ++f)
   {
-    mlim_facet* facet = &complex->facets[f];
-    if (facet->is_alive && !facet->is_settled)
+    if (complex->facets[f].is_alive && !complex->facets[f].is_settled)
     {
-      const mlim_cell* cell = &complex->cells[facet->cell];
-      const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
-      int is_taken = 0;
-      facet->is_settled = cell->label == other ||
-                          (mlim_sides_are_wide(complex, facet) &&
-                            mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label,
-                              other, mlim_criteria_distance(complex, r->options, &facet->sheet)));
-      if (!facet->is_settled)
-      {
-        status = mlim_refine_ask(r, (int32_t)f, context, &is_taken);
-        *count += (size_t)is_taken;
-      }
+      int is_taken;
+      status = mlim_refine_ask(r, (int32_t)f, context, &is_taken);
+      *count += (size_t)is_taken;
     }
     if (f % LOOK_EVERY == 0 && status == MLIM_OK)
     {
@@ -312,8 +336,9 @@ static mlim_status look_for_volume(const mlim_verification* v, mlim_context* con
     return mlim_fail_memory(context, "the volumes of the labels");
   }
   const size_t before = *count;
-  mlim_volumes_of_complex(complex, volumes);
-  for (size_t l = 0; l < labels; ++l)
+  const mlim_status status =
+    mlim_volumes_of_complex(complex, v->refinement->progress, context, volumes);
+  for (size_t l = 0; l < labels && status == MLIM_OK; ++l)
   {
     if (v->voxels[l] < MIN_VOLUME_VOXELS ||
         (int32_t)l == mlim_field_outside_label(complex->oracle.field))
@@ -335,7 +360,7 @@ static mlim_status look_for_volume(const mlim_verification* v, mlim_context* con
   }
   mlim_release(volumes);
   mlim_release(is_tightened);
-  return MLIM_OK;
+  return status;
 }
 
 /* ---- lost components ---- */

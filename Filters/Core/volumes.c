@@ -1,5 +1,6 @@
 #include "volumes.h"
 
+#include "ahead.h"
 #include "field_index.h"
 #include "memory.h"
 #include "status.h"
@@ -12,6 +13,7 @@ typedef struct volume_job
   const mlim_field* field;
   size_t label_count;
   size_t* eighths; /* of cells; label_count a slice of cells */
+  size_t* voxels;  /* the same a slice of points */
 } volume_job;
 
 static void add_mixed_cell(
@@ -61,15 +63,37 @@ static void volume_body(void* data, size_t begin, size_t end)
   }
 }
 
-static void count_voxels(const mlim_field* field, size_t* voxels)
+/* Points of one label nearly always follow each other. */
+static void voxel_body(void* data, size_t begin, size_t end)
 {
-  const int32_t* dims = mlim_field_grid_of(field)->dims;
-  const uint16_t* labels = mlim_field_point_labels(field);
-  const size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
-  for (size_t p = 0; p < count; ++p)
+  const volume_job* job = (const volume_job*)data;
+  const int32_t* dims = job->field->grid.dims;
+  const size_t slice = (size_t)dims[0] * (size_t)dims[1];
+  for (size_t z = begin; z < end; ++z)
   {
-    ++voxels[labels[p]];
+    const uint16_t* labels = mlim_field_point_labels(job->field) + z * slice;
+    size_t* voxels = job->voxels + z * job->label_count;
+    for (size_t p = 0; p < slice;)
+    {
+      size_t next = p + 1;
+      while (next < slice && labels[next] == labels[p])
+      {
+        ++next;
+      }
+      voxels[labels[p]] += next - p;
+      p = next;
+    }
   }
+}
+
+static size_t sum_slices(const size_t* counts, size_t label, size_t label_count, size_t slices)
+{
+  size_t sum = 0;
+  for (size_t z = 0; z < slices; ++z)
+  {
+    sum += counts[z * label_count + label];
+  }
+  return sum;
 }
 
 mlim_status mlim_volumes_of_field(
@@ -77,54 +101,112 @@ mlim_status mlim_volumes_of_field(
 {
   const size_t labels = (size_t)mlim_field_label_count(field);
   const size_t slices = (size_t)mlim_field_grid_of(field)->cells[2];
-  memset(voxels, 0, labels * sizeof *voxels);
-  size_t* eighths =
-    labels < SIZE_MAX / slices ? mlim_allocate_zeroed(labels * slices, sizeof *eighths) : NULL;
-  if (eighths == NULL)
-  {
-    return mlim_fail_memory(context, "the volumes of the labels");
-  }
-  volume_job job = { .field = field, .label_count = labels, .eighths = eighths };
-  const mlim_status status = mlim_parallel_stage(
-    context, &(mlim_stage_work){
-               .count = slices, .body = volume_body, .job = &job, .stage = MLIM_STAGE_SURFACE });
   const double* spacing = mlim_field_grid_of(field)->spacing;
-  for (size_t l = 0; l < labels; ++l)
+  const int fits = labels < SIZE_MAX / (slices + 1);
+  volume_job job = { .field = field,
+    .label_count = labels,
+    .eighths = fits ? mlim_allocate_zeroed(labels * slices, sizeof *job.eighths) : NULL,
+    .voxels = fits ? mlim_allocate_zeroed(labels * (slices + 1), sizeof *job.voxels) : NULL };
+  mlim_stage_work work = {
+    .count = slices, .body = volume_body, .job = &job, .stage = MLIM_STAGE_SURFACE
+  };
+  mlim_status status = job.eighths != NULL && job.voxels != NULL
+                         ? mlim_parallel_stage(context, &work)
+                         : mlim_fail_memory(context, "the volumes of the labels");
+  if (status == MLIM_OK)
   {
-    size_t sum = 0;
-    for (size_t z = 0; z < slices; ++z)
-    {
-      sum += eighths[z * labels + l];
-    }
-    volumes[l] = (double)sum / 8 * (spacing[0] * spacing[1] * spacing[2]);
+    work.count = slices + 1;
+    work.body = voxel_body;
+    status = mlim_parallel_stage(context, &work);
   }
-  mlim_release(eighths);
-  count_voxels(field, voxels);
+  for (size_t l = 0; l < labels && status == MLIM_OK; ++l)
+  {
+    const size_t eighths = sum_slices(job.eighths, l, labels, slices);
+    volumes[l] = (double)eighths / 8 * (spacing[0] * spacing[1] * spacing[2]);
+    voxels[l] = sum_slices(job.voxels, l, labels, slices + 1);
+  }
+  mlim_release(job.eighths);
+  mlim_release(job.voxels);
   return status;
 }
 
-void mlim_volumes_of_complex(const mlim_complex* complex, double* volumes)
+/* ---- of the complex ---- */
+
+enum
+{
+  CELLS_A_PIECE = 1 << 16 /* measured before they are added up, between two looks at the host */
+};
+
+typedef struct cell_job
+{
+  const mlim_complex* complex;
+  size_t first; /* cell of volumes[0] */
+  double* volumes;
+} cell_job;
+
+static double volume_of_cell(const mlim_complex* complex, const mlim_cell* cell)
+{
+  const int32_t* id = cell->vertices;
+  double edge[3][3];
+  for (int k = 0; k < 4; ++k)
+  {
+    if (id[0] < 0 || complex->vertices[id[k]].kind == MLIM_VERTEX_FAR)
+    {
+      return 0;
+    }
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    mlim_subtract(complex->vertices[id[k + 1]].point, complex->vertices[id[0]].point, edge[k]);
+  }
+  double normal[3];
+  mlim_cross(edge[0], edge[1], normal);
+  return mlim_dot(normal, edge[2]) / 6;
+}
+
+static void ask_ahead(const cell_job* job, size_t k, size_t end)
+{
+  if (k + MLIM_CELLS_AHEAD < end)
+  {
+    const int32_t* id = job->complex->cells[job->first + k + MLIM_CELLS_AHEAD].vertices;
+    for (int v = 0; v < 4 && id[0] >= 0; ++v)
+    {
+      mlim_ahead_of_vertex(job->complex, id[v]);
+    }
+  }
+}
+
+static void cell_body(void* data, size_t begin, size_t end)
+{
+  const cell_job* job = (const cell_job*)data;
+  for (size_t k = begin; k < end; ++k)
+  {
+    ask_ahead(job, k, end);
+    job->volumes[k] = volume_of_cell(job->complex, &job->complex->cells[job->first + k]);
+  }
+}
+
+mlim_status mlim_volumes_of_complex(
+  const mlim_complex* complex, double done, mlim_context* context, double* volumes)
 {
   memset(volumes, 0, (size_t)mlim_field_label_count(complex->oracle.field) * sizeof *volumes);
-  for (size_t c = 0; c < complex->cell_count; ++c)
+  cell_job job = { .complex = complex,
+    .volumes = mlim_allocate(CELLS_A_PIECE, sizeof *job.volumes) };
+  mlim_status status =
+    job.volumes != NULL ? MLIM_OK : mlim_fail_memory(context, "the volumes of the labels");
+  for (; job.first < complex->cell_count && status == MLIM_OK; job.first += CELLS_A_PIECE)
   {
-    const int32_t* id = complex->cells[c].vertices;
-    if (id[0] < 0)
+    const size_t left = complex->cell_count - job.first;
+    const size_t count = left < CELLS_A_PIECE ? left : CELLS_A_PIECE;
+    mlim_parallel_for(context, count, cell_body, &job);
+    /* One after the other, whoever measured them: sums depend on their order. */
+    for (size_t k = 0; k < count; ++k)
     {
-      continue;
+      const mlim_cell* cell = &complex->cells[job.first + k];
+      volumes[cell->vertices[0] < 0 ? 0 : cell->label] += job.volumes[k];
     }
-    int is_far = 0;
-    double edge[3][3];
-    for (int k = 0; k < 4; ++k)
-    {
-      is_far |= complex->vertices[id[k]].kind == MLIM_VERTEX_FAR;
-    }
-    for (int k = 0; k < 3; ++k)
-    {
-      mlim_subtract(complex->vertices[id[k + 1]].point, complex->vertices[id[0]].point, edge[k]);
-    }
-    double normal[3];
-    mlim_cross(edge[0], edge[1], normal);
-    volumes[complex->cells[c].label] += is_far ? 0 : mlim_dot(normal, edge[2]) / 6;
+    status = mlim_progress(context, MLIM_STAGE_SURFACE, done);
   }
+  mlim_release(job.volumes);
+  return status;
 }

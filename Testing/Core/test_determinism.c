@@ -1,5 +1,8 @@
-/* The same input gives the same bytes: again, at other addresses, and with work in any order. */
+/* The same input gives the same bytes: again, at other addresses, with work in any order, and with any number
+   of threads. */
 #include "shapes.h"
+
+#include <pthread.h>
 
 /* FNV-1a, 64 bits. */
 static uint64_t hash_bytes(uint64_t hash, const void* data, size_t size)
@@ -139,6 +142,60 @@ static void pieces(void* user, size_t count, mlim_body body, void* job)
   }
 }
 
+/* ---- threads ---- */
+
+enum
+{
+  MAX_THREADS = 3
+};
+
+/* Small ranges, which each thread takes as it comes to them. */
+typedef struct shared_work
+{
+  pthread_mutex_t lock;
+  size_t next, count, step;
+  mlim_body body;
+  void* job;
+} shared_work;
+
+static void* take_ranges(void* data)
+{
+  shared_work* work = data;
+  for (;;)
+  {
+    pthread_mutex_lock(&work->lock);
+    const size_t begin = work->next;
+    const size_t left = work->count - begin;
+    const size_t end = begin + (left < work->step ? left : work->step);
+    work->next = end;
+    pthread_mutex_unlock(&work->lock);
+    if (begin == end)
+    {
+      return NULL;
+    }
+    work->body(work->job, begin, end);
+  }
+}
+
+/* `user`: how many threads. */
+static void on_threads(void* user, size_t count, mlim_body body, void* job)
+{
+  const int threads = *(const int*)user;
+  shared_work work = { .count = count, .step = count / 16 + 1, .body = body, .job = job };
+  pthread_t others[MAX_THREADS];
+  CHECK(pthread_mutex_init(&work.lock, NULL) == 0);
+  for (int t = 1; t < threads; ++t)
+  {
+    CHECK(pthread_create(&others[t], NULL, take_ranges, &work) == 0);
+  }
+  take_ranges(&work);
+  for (int t = 1; t < threads; ++t)
+  {
+    CHECK(pthread_join(others[t], NULL) == 0);
+  }
+  pthread_mutex_destroy(&work.lock);
+}
+
 static void test_shape(int kind)
 {
   enum
@@ -170,6 +227,12 @@ static void test_shape(int kind)
   for (size_t k = 0; k < sizeof orders / sizeof *orders; ++k)
   {
     mlim_context context = { .parallel_for = orders[k] };
+    const digest other = make(kind, &context);
+    compare(&first, &other);
+  }
+  for (int threads = 1; threads <= MAX_THREADS; ++threads)
+  {
+    mlim_context context = { .parallel_for = on_threads, .user = &threads };
     const digest other = make(kind, &context);
     compare(&first, &other);
   }

@@ -112,8 +112,9 @@ static void make_pair(hand_mesh* h)
 static size_t open_edges(hand_mesh* h)
 {
   mlim_edges edges;
-  CHECK(mlim_edges_create(&h->mesh, NULL, &edges) == MLIM_OK);
-  const size_t count = mlim_quality_count_open_edges(&h->mesh, &edges);
+  CHECK(mlim_edges_create(&h->mesh, 0, NULL, &edges) == MLIM_OK);
+  size_t count = 0;
+  CHECK(mlim_quality_count_open_edges(&h->mesh, &edges, 0, NULL, &count) == MLIM_OK);
   mlim_edges_free(&edges);
   return count;
 }
@@ -121,10 +122,10 @@ static size_t open_edges(hand_mesh* h)
 static void measure(hand_mesh* h)
 {
   mlim_edges edges;
-  CHECK(mlim_edges_create(&h->mesh, NULL, &edges) == MLIM_OK);
+  CHECK(mlim_edges_create(&h->mesh, 0, NULL, &edges) == MLIM_OK);
   CHECK(mlim_quality_find_patches(&h->mesh, &edges, NULL) == MLIM_OK);
   CHECK(mlim_quality_settle_edges(&h->mesh, &edges, NULL) == MLIM_OK);
-  mlim_quality_measure(&h->mesh, &edges, 1);
+  CHECK(mlim_quality_measure(&h->mesh, &edges, 1, 0, NULL) == MLIM_OK);
   mlim_edges_free(&edges);
   mlim_release(h->mesh.edges);
   mlim_release(h->mesh.edge_curves);
@@ -138,7 +139,7 @@ static void test_edges(void)
   hand_mesh h;
   make_cube(&h);
   mlim_edges edges;
-  CHECK(mlim_edges_create(&h.mesh, NULL, &edges) == MLIM_OK);
+  CHECK(mlim_edges_create(&h.mesh, 0, NULL, &edges) == MLIM_OK);
   CHECK_COUNT(edges.use_count, 36);
   size_t runs = 0;
   for (int32_t v = 0; v < 8; ++v)
