@@ -186,7 +186,7 @@ static void ask_ahead(const tidier* t, size_t cell)
     if (sides >> k & 1u)
     {
       mlim_ahead_of_facet(complex, (int32_t)cell, k);
-      mlim_ahead_ask(&complex->facets[complex->cells[cell].facets[k]]);
+      mlim_prefetch(&complex->facets[complex->cells[cell].facets[k]]);
     }
   }
 }
@@ -201,7 +201,7 @@ static void look_body(void* data, size_t begin, size_t end)
     unsigned looks = 0;
     if (c + 2 * MLIM_CELLS_AHEAD < end)
     {
-      mlim_ahead_ask(&t->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
+      mlim_prefetch(&t->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
       ask_ahead(t, c + MLIM_CELLS_AHEAD);
     }
     for (int k = 0; sides >> k != 0; ++k)
