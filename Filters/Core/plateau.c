@@ -31,6 +31,7 @@ typedef struct stencil
 typedef struct builder
 {
   const mlim_samples* samples;
+  const mlim_peaks* peaks;
   const uint16_t* winners;
   mlim_plateau* out;
   stencil* stencils;
@@ -45,10 +46,27 @@ static double value_at(const mlim_samples* samples, int32_t label, size_t point)
   return value;
 }
 
+/* Labels among which are all that have the value at a point. */
+static size_t list_labels(const builder* b, size_t point, double value)
+{
+  const mlim_grid* grid = b->samples->grid;
+  const size_t nx = (size_t)grid->dims[0];
+  const size_t ny = (size_t)grid->dims[1];
+  if (grid->indicators != NULL)
+  {
+    return mlim_samples_list(b->samples, &point, 1, b->list);
+  }
+  const int32_t x = (int32_t)(point % nx);
+  const int32_t y = (int32_t)(point / nx % ny);
+  const int32_t z = (int32_t)(point / (nx * ny));
+  const mlim_point_box box = { { x, y, z }, { x, y, z } };
+  return mlim_peaks_list(b->peaks, &box, value, b->list);
+}
+
 static int add_point(builder* b, size_t point)
 {
   const double best = value_at(b->samples, b->winners[point] & ~MLIM_TIED_FLAG, point);
-  const size_t labels = mlim_samples_list(b->samples, &point, 1, b->list);
+  const size_t labels = list_labels(b, point, best);
   for (size_t n = 0; n < labels; ++n)
   {
     if (value_at(b->samples, b->list[n], point) != best)
@@ -200,8 +218,8 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
                                        b->out->count, INT32_MAX);
 }
 
-mlim_status mlim_plateau_find(
-  const mlim_samples* samples, mlim_context* context, uint16_t* winners, mlim_plateau* out)
+mlim_status mlim_plateau_find(const mlim_samples* samples, const mlim_peaks* peaks,
+  mlim_context* context, uint16_t* winners, mlim_plateau* out)
 {
   *out = (mlim_plateau){ 0 };
   const int32_t* dims = samples->grid->dims;
@@ -209,7 +227,7 @@ mlim_status mlim_plateau_find(
   mlim_status status = MLIM_OK;
   if (samples->grid->tie_breaking == MLIM_TIE_SMOOTH)
   {
-    builder b = { .samples = samples, .winners = winners, .out = out };
+    builder b = { .samples = samples, .peaks = peaks, .winners = winners, .out = out };
     status = collect(&b, points, context);
     if (status == MLIM_OK)
     {
