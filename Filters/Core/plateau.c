@@ -13,20 +13,17 @@ enum
   /* With more ties than one grid point in this many, the indicators say nothing: the lowest index
      wins after all. */
   SPARSE = 2,
-  NO_TIE = -1
+  NO_TIE = -1,
+  /* Between two looks at the host: */
+  LOOK_ROWS = 64,          /* rows of grid points, */
+  ROUND_STEPS = 1024 * 8192 /* or steps of a sweep */
 };
+
+static const double PROGRESS = 0.4;
 
 /* A bonus is this part of a difference of indicators: next to a tied point the interface moves by
    less than this part of a cell. */
 static const double BONUS_PART = 0.0009765625;
-
-/* The six neighbours of a tied label: another tied one, or a value that stands fast. */
-typedef struct stencil
-{
-  int32_t tied[6];
-  double fixed; /* sum over the others, relative to the largest value at each */
-  int32_t count;
-} stencil;
 
 typedef struct builder
 {
@@ -34,7 +31,6 @@ typedef struct builder
   const mlim_peaks* peaks;
   const uint16_t* winners;
   mlim_plateau* out;
-  stencil* stencils;
   uint16_t* list; /* the labels at a point */
   size_t capacity;
 } builder;
@@ -104,12 +100,60 @@ static const mlim_tied* find_tied(const mlim_plateau* plateau, size_t point, int
   return is_found ? &plateau->tied[low] : NULL;
 }
 
-static stencil look_round(const builder* b, const mlim_tied* tied)
+/* ---- smoothing ---- */
+
+/* The six neighbours of a tied label: the same label tied there too, or a value that stands fast. */
+typedef struct stencil
 {
+  int32_t tied[6]; /* its knot, or NO_TIE */
+  double fixed;    /* sum over the others, relative to the largest value at each */
+  int32_t count;
+} stencil;
+
+/* Ties of one label know nothing of another's. */
+typedef struct label_ties
+{
+  size_t begin, end; /* knots, ascending by point */
+  int is_settled;    /* a sweep has changed nothing, so none will */
+} label_ties;
+
+/* The ties label by label; all arrays but `labels` have one entry a tie, a knot. */
+typedef struct smoother
+{
+  const builder* from;
+  size_t label_count;
+  label_ties* labels;
+  int32_t* order; /* index of the tie */
+  stencil* stencils;
+  double* bonus;
+  int first_sweep, end_sweep; /* of a round */
+} smoother;
+
+static size_t point_of(const smoother* s, size_t knot)
+{
+  return s->from->out->tied[s->order[knot]].point;
+}
+
+/* Knot of the same label at a point; the search goes on from *at, points being asked for in ascending
+   order. */
+static int32_t find_knot(const smoother* s, const label_ties* label, size_t point, size_t* at)
+{
+  while (*at < label->end && point_of(s, *at) < point)
+  {
+    ++*at;
+  }
+  return *at < label->end && point_of(s, *at) == point ? (int32_t)*at : NO_TIE;
+}
+
+static stencil look_round(
+  const smoother* s, const label_ties* label, size_t knot, size_t search[6])
+{
+  const builder* b = s->from;
   const mlim_grid* grid = b->samples->grid;
   const size_t nx = (size_t)grid->dims[0];
   const size_t ny = (size_t)grid->dims[1];
   const size_t steps[3] = { 1, nx, nx * ny };
+  const mlim_tied* tied = &b->out->tied[s->order[knot]];
   const size_t at[3] = { tied->point % nx, tied->point / nx % ny, tied->point / steps[2] };
   stencil out = { 0 };
   for (int side = 0; side < 6; ++side)
@@ -121,52 +165,142 @@ static stencil look_round(const builder* b, const mlim_tied* tied)
       continue;
     }
     const size_t q = side & 1 ? tied->point + steps[axis] : tied->point - steps[axis];
-    const mlim_tied* other = find_tied(b->out, q, tied->label);
     ++out.count;
-    if (other != NULL)
+    out.tied[side] = find_knot(s, label, q, &search[side]);
+    if (out.tied[side] == NO_TIE)
     {
-      out.tied[side] = (int32_t)(other - b->out->tied);
-      continue;
+      out.fixed += value_at(b->samples, tied->label, q) -
+                   value_at(b->samples, b->winners[q] & ~MLIM_TIED_FLAG, q);
     }
-    out.fixed += value_at(b->samples, tied->label, q) -
-                 value_at(b->samples, b->winners[q] & ~MLIM_TIED_FLAG, q);
   }
   return out;
 }
 
-static double mean_round(const mlim_plateau* plateau, const stencil* s)
+static void look_body(void* data, size_t begin, size_t end)
 {
-  double sum = s->fixed;
-  for (int side = 0; side < 6; ++side)
+  const smoother* s = (const smoother*)data;
+  for (size_t l = begin; l < end; ++l)
   {
-    sum += s->tied[side] != NO_TIE ? plateau->tied[s->tied[side]].bonus : 0;
-  }
-  return sum / s->count;
-}
-
-static mlim_status smooth(builder* b, mlim_context* context)
-{
-  const size_t count = b->out->count;
-  b->stencils = mlim_allocate(count, sizeof *b->stencils);
-  if (b->stencils == NULL)
-  {
-    return mlim_fail_memory(context, "the ties of the indicators");
-  }
-  for (size_t k = 0; k < count; ++k)
-  {
-    b->stencils[k] = look_round(b, &b->out->tied[k]);
-  }
-  for (int sweep = 0; sweep < SWEEPS; ++sweep)
-  {
-    for (size_t k = 0; k < count; ++k)
+    const label_ties* label = &s->labels[l];
+    size_t search[6];
+    for (int side = 0; side < 6; ++side)
     {
-      const size_t n = sweep & 1 ? count - 1 - k : k;
-      b->out->tied[n].bonus = mean_round(b->out, &b->stencils[n]);
+      search[side] = label->begin;
+    }
+    for (size_t knot = label->begin; knot < label->end; ++knot)
+    {
+      s->stencils[knot] = look_round(s, label, knot, search);
+      s->bonus[knot] = 0;
     }
   }
-  mlim_release(b->stencils);
-  return MLIM_OK;
 }
+
+static double mean_round(const smoother* s, size_t knot)
+{
+  const stencil* round = &s->stencils[knot];
+  double sum = round->fixed;
+  for (int side = 0; side < 6; ++side)
+  {
+    sum += round->tied[side] != NO_TIE ? s->bonus[round->tied[side]] : 0;
+  }
+  return sum / round->count;
+}
+
+static void sweep_once(const smoother* s, label_ties* label, int is_backward)
+{
+  const size_t count = label->end - label->begin;
+  int has_changed = 0;
+  for (size_t n = 0; n < count; ++n)
+  {
+    const size_t knot = is_backward ? label->end - 1 - n : label->begin + n;
+    const double mean = mean_round(s, knot);
+    has_changed |= mean != s->bonus[knot];
+    s->bonus[knot] = mean;
+  }
+  label->is_settled = !has_changed;
+}
+
+/* All sweeps of a round over one label before the next label, which may fit the cache. */
+static void sweep_body(void* data, size_t begin, size_t end)
+{
+  const smoother* s = (const smoother*)data;
+  for (size_t l = begin; l < end; ++l)
+  {
+    for (int n = s->first_sweep; n < s->end_sweep && !s->labels[l].is_settled; ++n)
+    {
+      sweep_once(s, &s->labels[l], n & 1);
+    }
+  }
+}
+
+/* Sorts the ties by label. */
+static void part_labels(smoother* s)
+{
+  const mlim_plateau* plateau = s->from->out;
+  for (size_t k = 0; k < plateau->count; ++k)
+  {
+    ++s->labels[plateau->tied[k].label].end;
+  }
+  size_t begin = 0;
+  for (size_t l = 0; l < s->label_count; ++l)
+  {
+    const size_t count = s->labels[l].end;
+    s->labels[l].begin = begin;
+    s->labels[l].end = begin;
+    begin += count;
+  }
+  for (size_t k = 0; k < plateau->count; ++k)
+  {
+    s->order[s->labels[plateau->tied[k].label].end++] = (int32_t)k;
+  }
+}
+
+static mlim_status sweep_all(smoother* s, mlim_context* context)
+{
+  part_labels(s);
+  mlim_parallel_for(context, s->label_count, look_body, s);
+  const size_t fitting = ROUND_STEPS / s->from->out->count;
+  const int round = fitting < 1 ? 1 : fitting < SWEEPS ? (int)fitting : SWEEPS;
+  mlim_status status = MLIM_OK;
+  for (int sweep = 0; sweep < SWEEPS && status == MLIM_OK; sweep += round)
+  {
+    s->first_sweep = sweep;
+    s->end_sweep = sweep + round < SWEEPS ? sweep + round : SWEEPS;
+    mlim_parallel_for(context, s->label_count, sweep_body, s);
+    status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
+  }
+  for (size_t knot = 0; knot < s->from->out->count; ++knot)
+  {
+    s->from->out->tied[s->order[knot]].bonus = s->bonus[knot];
+  }
+  return status;
+}
+
+static mlim_status smooth(const builder* b, mlim_context* context)
+{
+  const size_t count = b->out->count;
+  if (count == 0)
+  {
+    return MLIM_OK;
+  }
+  /* One more for the outside of blanked points. */
+  smoother s = { .from = b, .label_count = (size_t)b->samples->label_count + 1 };
+  s.labels = mlim_allocate_zeroed(s.label_count, sizeof *s.labels);
+  s.order = mlim_allocate(count, sizeof *s.order);
+  s.stencils = mlim_allocate(count, sizeof *s.stencils);
+  s.bonus = mlim_allocate(count, sizeof *s.bonus);
+  const int has_memory =
+    s.labels != NULL && s.order != NULL && s.stencils != NULL && s.bonus != NULL;
+  const mlim_status status = has_memory ? sweep_all(&s, context)
+                                        : mlim_fail_memory(context, "the ties of the indicators");
+  mlim_release(s.labels);
+  mlim_release(s.order);
+  mlim_release(s.stencils);
+  mlim_release(s.bonus);
+  return status;
+}
+
+/* ---- all of it ---- */
 
 /* Shifts the bonuses of each point so that the best is 0, scales them, and names the winner. */
 static void settle(mlim_plateau* plateau, uint16_t* winners)
@@ -201,15 +335,24 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
     return MLIM_OK;
   }
   b->list = mlim_allocate((size_t)b->samples->label_count + 1, sizeof *b->list);
-  int has_failed = b->list == NULL;
-  for (size_t p = 0; p < points && !has_failed; ++p)
+  mlim_status status =
+    b->list != NULL ? MLIM_OK : mlim_fail_memory(context, "the ties of the indicators");
+  const size_t row = (size_t)b->samples->grid->dims[0];
+  for (size_t p = 0; p < points && status == MLIM_OK; ++p)
   {
-    has_failed = (b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p);
+    if ((b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p))
+    {
+      status = mlim_fail_memory(context, "the ties of the indicators");
+    }
+    else if (p % (LOOK_ROWS * row) == 0)
+    {
+      status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
+    }
   }
   mlim_release(b->list);
-  if (has_failed)
+  if (status != MLIM_OK)
   {
-    return mlim_fail_memory(context, "the ties of the indicators");
+    return status;
   }
   return b->out->count < INT32_MAX ? MLIM_OK
                                    : mlim_fail(context, MLIM_INVALID_ARGUMENT,
