@@ -65,8 +65,7 @@ static void read_complement(const mlim_field_source* source, mlim_field_brick* b
   {
     for (int32_t y = box->first[1]; y <= box->last[1]; ++y)
     {
-      const size_t row =
-        (size_t)(y - box->first[1]) + BRICK_SIDE * (size_t)(z - box->first[2]);
+      const size_t row = (size_t)(y - box->first[1]) + BRICK_SIDE * (size_t)(z - box->first[2]);
       mlim_samples_row(source->samples, source->samples->outside_label,
         point_index(source, (const int32_t[3]){ 0, y, z }), nx, brick->complement + row * nx);
     }
@@ -99,8 +98,7 @@ static void read_row(const mlim_field_source* source, mlim_field_brick* brick, i
   }
 }
 
-static size_t tied_point(
-  const mlim_field_source* source, const mlim_field_brick* brick, int32_t n)
+static size_t tied_point(const mlim_field_source* source, const mlim_field_brick* brick, int32_t n)
 {
   const int32_t at[3] = { brick->box.first[0] + n % BRICK_SIDE,
     brick->box.first[1] + n / BRICK_SIDE % BRICK_SIDE,
@@ -125,8 +123,7 @@ static int read_label(
   {
     for (int32_t y = box->first[1]; y <= box->last[1]; ++y)
     {
-      double* row =
-        values + BRICK_SIDE * ((y - box->first[1]) + BRICK_SIDE * (z - box->first[2]));
+      double* row = values + BRICK_SIDE * ((y - box->first[1]) + BRICK_SIDE * (z - box->first[2]));
       read_row(source, brick, label, (const int32_t[3]){ box->first[0], y, z }, row);
       for (int32_t x = 0; x < count; ++x)
       {
@@ -146,8 +143,8 @@ static int read_label(
 /* ---- the rivals ---- */
 
 /* Labels of the brick's grid points, and the places where they tie. */
-static void read_winners(const mlim_field_source* source, mlim_field_brick* brick,
-  uint16_t winners[BRICK_POINTS])
+static void read_winners(
+  const mlim_field_source* source, mlim_field_brick* brick, uint16_t winners[BRICK_POINTS])
 {
   const mlim_point_box* box = &brick->box;
   brick->tied_count = 0;
@@ -157,8 +154,7 @@ static void read_winners(const mlim_field_source* source, mlim_field_brick* bric
     {
       const uint16_t* row =
         source->field->winners + point_index(source, (const int32_t[3]){ box->first[0], y, z });
-      const int32_t to =
-        BRICK_SIDE * ((y - box->first[1]) + BRICK_SIDE * (z - box->first[2]));
+      const int32_t to = BRICK_SIDE * ((y - box->first[1]) + BRICK_SIDE * (z - box->first[2]));
       for (int32_t x = 0; x <= box->last[0] - box->first[0]; ++x)
       {
         winners[to + x] = (uint16_t)(row[x] & ~MLIM_TIED_FLAG);
@@ -195,8 +191,8 @@ static size_t rival_of(rival_list* list, uint16_t label)
 
 /* The largest value that some corner's winner has everywhere in the cell: a label that stays below it
    cannot be a candidate there. */
-static double cell_floor(const mlim_field_brick* brick, const uint8_t rival[BRICK_POINTS],
-  int32_t first)
+static double cell_floor(
+  const mlim_field_brick* brick, const uint8_t rival[BRICK_POINTS], int32_t first)
 {
   double out = -DBL_MAX;
   for (int c = 0; c < 8; ++c)
@@ -256,8 +252,8 @@ static int read_rivals(const mlim_field_source* source, uint64_t mixed, rival_li
 
 /* ---- a brick ---- */
 
-int mlim_field_brick_read(const mlim_field_source* source, const int32_t at[3], uint64_t mixed,
-  mlim_field_brick* brick)
+int mlim_field_brick_read(
+  const mlim_field_source* source, const int32_t at[3], uint64_t mixed, mlim_field_brick* brick)
 {
   for (int k = 0; k < 3; ++k)
   {
@@ -320,8 +316,7 @@ int32_t mlim_field_brick_find(const mlim_field_brick* brick, int32_t label)
   return -1;
 }
 
-void mlim_field_brick_corners(
-  const mlim_field_brick* brick, size_t n, uint32_t slot, double out[8])
+void mlim_field_brick_corners(const mlim_field_brick* brick, size_t n, uint32_t slot, double out[8])
 {
   const double* values = brick->values + brick->at[n] + first_corner(slot);
   for (int c = 0; c < 8; ++c)

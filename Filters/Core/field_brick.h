@@ -44,8 +44,8 @@ void mlim_field_brick_free(mlim_field_brick* brick);
 
 /* Reads a brick. Bit s of `mixed` stands for the cell in slot s; one is mixed at least. Not 0: out of
    memory. */
-int mlim_field_brick_read(const mlim_field_source* source, const int32_t at[3], uint64_t mixed,
-  mlim_field_brick* brick);
+int mlim_field_brick_read(
+  const mlim_field_source* source, const int32_t at[3], uint64_t mixed, mlim_field_brick* brick);
 
 /* Index of a label among the brick's; -1: it is not there. */
 int32_t mlim_field_brick_find(const mlim_field_brick* brick, int32_t label);

@@ -103,9 +103,9 @@ static void add_mixed(
     int32_t cell[3];
     if (work->mixed >> slot & 1 && find_cell(job->field, work, slot, cell))
     {
-      const mlim_field_place place = { .first = first_corner(job->field, cell),
-        .corner = work->corner,
-        .slot = slot };
+      const mlim_field_place place = {
+        .first = first_corner(job->field, cell), .corner = work->corner, .slot = slot
+      };
       work->words[slot] = mlim_field_add_mixed(source, brick, layer, &place);
     }
   }
@@ -154,8 +154,7 @@ static void layer_body(void* data, size_t begin, size_t end)
   for (size_t z = begin; z < end; ++z)
   {
     field_layer* layer = &job->field->layers[z];
-    layer->list =
-      mlim_allocate((size_t)job->source.samples->label_count + 1, sizeof *layer->list);
+    layer->list = mlim_allocate((size_t)job->source.samples->label_count + 1, sizeof *layer->list);
     layer->has_failed = layer->list == NULL || !has_brick;
     for (int32_t y = 0; y < job->field->bricks[1] && !layer->has_failed; ++y)
     {
@@ -260,9 +259,8 @@ static mlim_status find_points(mlim_samples* samples, mlim_context* context, mli
   mlim_peaks* peaks, mlim_plateau* plateau)
 {
   const mlim_status status = mlim_winners_find(samples, context, field->winners, peaks);
-  return status != MLIM_OK
-           ? status
-           : mlim_plateau_find(samples, peaks, context, field->winners, plateau);
+  return status != MLIM_OK ? status
+                           : mlim_plateau_find(samples, peaks, context, field->winners, plateau);
 }
 
 static mlim_status build_index(build_job* job, mlim_context* context)

@@ -2,8 +2,8 @@
 #ifndef mlim_field_cell_h
 #define mlim_field_cell_h
 
-#include "field_index.h"
 #include "field_brick.h"
+#include "field_index.h"
 
 /* A mixed cell: its first corner's index among the grid points, the offsets of the others, and its place
    in its brick. */

@@ -20,8 +20,7 @@ typedef struct mlim_peaks
 } mlim_peaks;
 
 /* All peaks below every value. */
-mlim_status mlim_peaks_create(
-  const mlim_samples* samples, mlim_context* context, mlim_peaks* out);
+mlim_status mlim_peaks_create(const mlim_samples* samples, mlim_context* context, mlim_peaks* out);
 void mlim_peaks_free(mlim_peaks* peaks);
 
 /* The arrays' peaks of a block. */

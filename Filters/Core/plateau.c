@@ -13,9 +13,8 @@ enum
   /* With more ties than one grid point in this many, the indicators say nothing: the lowest index
      wins after all. */
   SPARSE = 2,
-  NO_TIE = -1,
   /* Between two looks at the host: */
-  LOOK_ROWS = 64,          /* rows of grid points, */
+  LOOK_ROWS = 64,           /* rows of grid points, */
   ROUND_STEPS = 1024 * 8192 /* or steps of a sweep */
 };
 
@@ -105,7 +104,7 @@ static const mlim_tied* find_tied(const mlim_plateau* plateau, size_t point, int
 /* The six neighbours of a tied label: the same label tied there too, or a value that stands fast. */
 typedef struct stencil
 {
-  int32_t tied[6]; /* its knot, or NO_TIE */
+  int32_t tied[6]; /* its knot, or the smoother's nowhere */
   double fixed;    /* sum over the others, relative to the largest value at each */
   int32_t count;
 } stencil;
@@ -117,7 +116,8 @@ typedef struct label_ties
   int is_settled;    /* a sweep has changed nothing, so none will */
 } label_ties;
 
-/* The ties label by label; all arrays but `labels` have one entry a tie, a knot. */
+/* The ties label by label; all arrays but `labels` have one entry a tie, a knot. `bonus` has one more, a 0
+   at `nowhere`: a sum over six neighbours is faster without asking which of them there are. */
 typedef struct smoother
 {
   const builder* from;
@@ -126,6 +126,7 @@ typedef struct smoother
   int32_t* order; /* index of the tie */
   stencil* stencils;
   double* bonus;
+  int32_t nowhere;
   int first_sweep, end_sweep; /* of a round */
 } smoother;
 
@@ -142,11 +143,10 @@ static int32_t find_knot(const smoother* s, const label_ties* label, size_t poin
   {
     ++*at;
   }
-  return *at < label->end && point_of(s, *at) == point ? (int32_t)*at : NO_TIE;
+  return *at < label->end && point_of(s, *at) == point ? (int32_t)*at : s->nowhere;
 }
 
-static stencil look_round(
-  const smoother* s, const label_ties* label, size_t knot, size_t search[6])
+static stencil look_round(const smoother* s, const label_ties* label, size_t knot, size_t search[6])
 {
   const builder* b = s->from;
   const mlim_grid* grid = b->samples->grid;
@@ -159,7 +159,7 @@ static stencil look_round(
   for (int side = 0; side < 6; ++side)
   {
     const int axis = side >> 1;
-    out.tied[side] = NO_TIE;
+    out.tied[side] = s->nowhere;
     if (side & 1 ? at[axis] + 1 >= (size_t)grid->dims[axis] : at[axis] == 0)
     {
       continue;
@@ -167,7 +167,7 @@ static stencil look_round(
     const size_t q = side & 1 ? tied->point + steps[axis] : tied->point - steps[axis];
     ++out.count;
     out.tied[side] = find_knot(s, label, q, &search[side]);
-    if (out.tied[side] == NO_TIE)
+    if (out.tied[side] == s->nowhere)
     {
       out.fixed += value_at(b->samples, tied->label, q) -
                    value_at(b->samples, b->winners[q] & ~MLIM_TIED_FLAG, q);
@@ -176,9 +176,8 @@ static stencil look_round(
   return out;
 }
 
-static void look_body(void* data, size_t begin, size_t end)
+static void look_labels(const smoother* s, size_t begin, size_t end)
 {
-  const smoother* s = (const smoother*)data;
   for (size_t l = begin; l < end; ++l)
   {
     const label_ties* label = &s->labels[l];
@@ -195,13 +194,12 @@ static void look_body(void* data, size_t begin, size_t end)
   }
 }
 
-static double mean_round(const smoother* s, size_t knot)
+static double mean_round(const double* bonus, const stencil* round)
 {
-  const stencil* round = &s->stencils[knot];
   double sum = round->fixed;
   for (int side = 0; side < 6; ++side)
   {
-    sum += round->tied[side] != NO_TIE ? s->bonus[round->tied[side]] : 0;
+    sum += bonus[round->tied[side]];
   }
   return sum / round->count;
 }
@@ -213,7 +211,7 @@ static void sweep_once(const smoother* s, label_ties* label, int is_backward)
   for (size_t n = 0; n < count; ++n)
   {
     const size_t knot = is_backward ? label->end - 1 - n : label->begin + n;
-    const double mean = mean_round(s, knot);
+    const double mean = mean_round(s->bonus, &s->stencils[knot]);
     has_changed |= mean != s->bonus[knot];
     s->bonus[knot] = mean;
   }
@@ -221,9 +219,8 @@ static void sweep_once(const smoother* s, label_ties* label, int is_backward)
 }
 
 /* All sweeps of a round over one label before the next label, which may fit the cache. */
-static void sweep_body(void* data, size_t begin, size_t end)
+static void sweep_labels(const smoother* s, size_t begin, size_t end)
 {
-  const smoother* s = (const smoother*)data;
   for (size_t l = begin; l < end; ++l)
   {
     for (int n = s->first_sweep; n < s->end_sweep && !s->labels[l].is_settled; ++n)
@@ -255,19 +252,65 @@ static void part_labels(smoother* s)
   }
 }
 
+/* Labels from a first one on whose sweeps take no longer than a round; one at least. */
+static size_t end_of_round(const smoother* s, size_t begin)
+{
+  size_t end = begin + 1;
+  while (
+    end < s->label_count && s->labels[end].end - s->labels[begin].begin <= ROUND_STEPS / SWEEPS)
+  {
+    ++end;
+  }
+  return end;
+}
+
+typedef struct round_job
+{
+  smoother* s;
+  size_t first;
+} round_job;
+
+static void look_round_body(void* data, size_t begin, size_t end)
+{
+  const round_job* job = (const round_job*)data;
+  look_labels(job->s, job->first + begin, job->first + end);
+}
+
+static void sweep_round_body(void* data, size_t begin, size_t end)
+{
+  const round_job* job = (const round_job*)data;
+  sweep_labels(job->s, job->first + begin, job->first + end);
+}
+
+/* Some labels in one round, or one large label in several. */
+static mlim_status sweep_some(smoother* s, size_t begin, size_t end, mlim_context* context)
+{
+  round_job job = { s, begin };
+  const size_t knots = s->labels[end - 1].end - s->labels[begin].begin;
+  const size_t fitting = ROUND_STEPS / (knots > 0 ? knots : 1);
+  const int sweeps = fitting < 1 ? 1 : fitting < SWEEPS ? (int)fitting : SWEEPS;
+  mlim_parallel_for(context, end - begin, look_round_body, &job);
+  mlim_status status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
+  for (int sweep = 0; sweep < SWEEPS && status == MLIM_OK; sweep += sweeps)
+  {
+    s->first_sweep = sweep;
+    s->end_sweep = sweep + sweeps < SWEEPS ? sweep + sweeps : SWEEPS;
+    mlim_parallel_for(context, end - begin, sweep_round_body, &job);
+    status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
+  }
+  return status;
+}
+
 static mlim_status sweep_all(smoother* s, mlim_context* context)
 {
   part_labels(s);
-  mlim_parallel_for(context, s->label_count, look_body, s);
-  const size_t fitting = ROUND_STEPS / s->from->out->count;
-  const int round = fitting < 1 ? 1 : fitting < SWEEPS ? (int)fitting : SWEEPS;
+  s->bonus[s->nowhere] = 0;
   mlim_status status = MLIM_OK;
-  for (int sweep = 0; sweep < SWEEPS && status == MLIM_OK; sweep += round)
+  size_t end;
+  for (size_t begin = 0; begin < s->label_count && status == MLIM_OK; begin = end)
   {
-    s->first_sweep = sweep;
-    s->end_sweep = sweep + round < SWEEPS ? sweep + round : SWEEPS;
-    mlim_parallel_for(context, s->label_count, sweep_body, s);
-    status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
+    end = end_of_round(s, begin);
+    status = sweep_some(s, begin, end, context);
   }
   for (size_t knot = 0; knot < s->from->out->count; ++knot)
   {
@@ -284,15 +327,17 @@ static mlim_status smooth(const builder* b, mlim_context* context)
     return MLIM_OK;
   }
   /* One more for the outside of blanked points. */
-  smoother s = { .from = b, .label_count = (size_t)b->samples->label_count + 1 };
+  smoother s = {
+    .from = b, .label_count = (size_t)b->samples->label_count + 1, .nowhere = (int32_t)count
+  };
   s.labels = mlim_allocate_zeroed(s.label_count, sizeof *s.labels);
   s.order = mlim_allocate(count, sizeof *s.order);
   s.stencils = mlim_allocate(count, sizeof *s.stencils);
-  s.bonus = mlim_allocate(count, sizeof *s.bonus);
+  s.bonus = mlim_allocate(count + 1, sizeof *s.bonus);
   const int has_memory =
     s.labels != NULL && s.order != NULL && s.stencils != NULL && s.bonus != NULL;
-  const mlim_status status = has_memory ? sweep_all(&s, context)
-                                        : mlim_fail_memory(context, "the ties of the indicators");
+  const mlim_status status =
+    has_memory ? sweep_all(&s, context) : mlim_fail_memory(context, "the ties of the indicators");
   mlim_release(s.labels);
   mlim_release(s.order);
   mlim_release(s.stencils);

@@ -106,9 +106,9 @@ mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* wo
 {
   enum
   {
-    PIECES = 32 /* each well below the tenth of a second in which a host wants to cancel */
+    PIECES = 32
   };
-  const size_t step = work->count / PIECES + 1;
+  const size_t step = work->count / (work->pieces > 0 ? work->pieces : PIECES) + 1;
   mlim_status status = mlim_progress(context, work->stage, work->from);
   for (size_t first = 0; first < work->count && status == MLIM_OK; first += step)
   {

@@ -29,6 +29,9 @@ typedef struct mlim_stage_work
   void* job;
   mlim_stage stage;
   double from, to;
+  size_t
+    pieces; /* 0: 32, which is enough where each is well below the tenth of a second in which a host
+                    wants to cancel */
 } mlim_stage_work;
 
 mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* work);

@@ -16,6 +16,9 @@ enum
   TILE_ROWS = MLIM_PEAK_BLOCK * MLIM_PEAK_BLOCK
 };
 
+/* Between two looks at the host: some hundredths of a second. */
+static const double PIECE_VALUES = 3e7;
+
 /* What one row of blocks says of all values. */
 typedef struct unit_range
 {
@@ -37,12 +40,12 @@ typedef struct win_job
 typedef struct tile
 {
   const win_job* job;
-  int32_t block[3];          /* the first one */
-  size_t count;              /* points along x */
+  int32_t block[3]; /* the first one */
+  size_t count;     /* points along x */
   size_t row_count;
-  size_t first[TILE_ROWS];   /* a row: its first grid point */
-  char* best;                /* MLIM_ROW values a row */
-  double* sum;               /* the same, with a complement; else NULL */
+  size_t first[TILE_ROWS]; /* a row: its first grid point */
+  char* best;              /* MLIM_ROW values a row */
+  double* sum;             /* the same, with a complement; else NULL */
   mlim_row low, peak;
   int has_bad;
 } tile;
@@ -155,7 +158,8 @@ static void win_unit(tile* t, unit_range* out)
   const mlim_grid* grid = t->job->samples->grid;
   const size_t nx = (size_t)grid->dims[0];
   const size_t parts = (nx + MLIM_ROW - 1) / MLIM_ROW;
-  const size_t width = ((nx + parts - 1) / parts + MLIM_PEAK_BLOCK - 1) / MLIM_PEAK_BLOCK * MLIM_PEAK_BLOCK;
+  const size_t width =
+    ((nx + parts - 1) / parts + MLIM_PEAK_BLOCK - 1) / MLIM_PEAK_BLOCK * MLIM_PEAK_BLOCK;
   const int32_t y = MLIM_PEAK_BLOCK * t->block[1];
   const int32_t z = MLIM_PEAK_BLOCK * t->block[2];
   *out = (unit_range){ .range = { .min = DBL_MAX, .max = -DBL_MAX, .max_sum = -DBL_MAX } };
@@ -169,8 +173,7 @@ static void win_unit(tile* t, unit_range* out)
       const int32_t at[2] = { y + n % MLIM_PEAK_BLOCK, z + n / MLIM_PEAK_BLOCK };
       if (at[0] < grid->dims[1] && at[1] < grid->dims[2])
       {
-        t->first[t->row_count++] =
-          x + nx * ((size_t)at[0] + (size_t)grid->dims[1] * (size_t)at[1]);
+        t->first[t->row_count++] = x + nx * ((size_t)at[0] + (size_t)grid->dims[1] * (size_t)at[1]);
       }
     }
     win_tile(t, out);
@@ -190,10 +193,9 @@ static void win_body(void* data, size_t begin, size_t end)
     if (has_memory)
     {
       const int32_t along = job->peaks->blocks[1];
-      *t = (tile){ .job = job,
-        .block = { 0, (int32_t)n % along, (int32_t)n / along },
-        .best = best,
-        .sum = sum };
+      *t = (tile){
+        .job = job, .block = { 0, (int32_t)n % along, (int32_t)n / along }, .best = best, .sum = sum
+      };
       win_unit(t, &job->units[n]);
     }
     else
@@ -239,18 +241,22 @@ static mlim_status win_arrays(
     /* Where arrays lie interleaved, they share their cache lines. */
     job.group = grid->arrays[a].stride == 1 ? job.group : 1;
   }
+  const double value_count =
+    (double)grid->dims[0] * grid->dims[1] * grid->dims[2] * (double)grid->array_count;
   const size_t unit_count = (size_t)peaks->blocks[1] * (size_t)peaks->blocks[2];
   job.units = mlim_allocate_zeroed(unit_count, sizeof *job.units);
   if (job.units == NULL)
   {
     return mlim_fail_memory(context, "reading the arrays");
   }
-  mlim_status status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = unit_count,
-                                                      .body = win_body,
-                                                      .job = &job,
-                                                      .stage = MLIM_STAGE_FIELD,
-                                                      .from = 0,
-                                                      .to = 0.3 });
+  mlim_status status =
+    mlim_parallel_stage(context, &(mlim_stage_work){ .count = unit_count,
+                                   .body = win_body,
+                                   .job = &job,
+                                   .stage = MLIM_STAGE_FIELD,
+                                   .from = 0,
+                                   .to = 0.3,
+                                   .pieces = 32 + (size_t)(value_count / PIECE_VALUES) });
   mlim_sample_range range;
   if (status == MLIM_OK)
   {
@@ -267,8 +273,8 @@ static mlim_status win_arrays(
 /* ---- the label by rule ---- */
 
 /* The values of arrays at some points of a row, each point having its own array. */
-static void read_winners(const mlim_samples* samples, size_t first, size_t count,
-  const uint16_t* winners, double* out)
+static void read_winners(
+  const mlim_samples* samples, size_t first, size_t count, const uint16_t* winners, double* out)
 {
   size_t run;
   for (size_t i = 0; i < count; i += run)

@@ -87,11 +87,21 @@ static const float* read_single(const mlim_row_work* work, float* restrict buffe
 
 /* ---- comparing ---- */
 
+/* Most values win nowhere: whether one of a row does is told before the winners are touched. */
+
 static void win_narrow(const mlim_row_work* work, const int16_t* restrict value,
   int16_t* restrict best, int16_t* restrict low, uint16_t* restrict winners, int16_t* restrict peak)
 {
   const uint16_t label = work->label;
+  uint16_t is_met = 0;
   for (size_t i = 0; i < work->count; ++i)
+  {
+    const int16_t v = value[i];
+    is_met |= v >= best[i] ? 1 : 0;
+    low[i] = v < low[i] ? v : low[i];
+    peak[i] = v > peak[i] ? v : peak[i];
+  }
+  for (size_t i = 0; is_met && i < work->count; ++i)
   {
     const int16_t v = value[i];
     const int16_t b = best[i];
@@ -100,8 +110,6 @@ static void win_narrow(const mlim_row_work* work, const int16_t* restrict value,
     const uint16_t held = v == b ? tied : w;
     winners[i] = v > b ? label : held;
     best[i] = v > b ? v : b;
-    low[i] = v < low[i] ? v : low[i];
-    peak[i] = v > peak[i] ? v : peak[i];
   }
 }
 
@@ -109,8 +117,17 @@ static int win_single(const mlim_row_work* work, const float* restrict value, fl
   float* restrict low, uint16_t* restrict winners, float* restrict peak)
 {
   const uint16_t label = work->label;
+  int is_met = 0;
   int is_bad = 0;
   for (size_t i = 0; i < work->count; ++i)
+  {
+    const float v = value[i];
+    is_met |= v >= best[i] ? 1 : 0;
+    is_bad |= v - v == 0 ? 0 : 1;
+    low[i] = v < low[i] ? v : low[i];
+    peak[i] = v > peak[i] ? v : peak[i];
+  }
+  for (size_t i = 0; is_met && i < work->count; ++i)
   {
     const float v = value[i];
     const float b = best[i];
@@ -119,9 +136,6 @@ static int win_single(const mlim_row_work* work, const float* restrict value, fl
     const uint16_t held = v == b ? tied : w;
     winners[i] = v > b ? label : held;
     best[i] = v > b ? v : b;
-    low[i] = v < low[i] ? v : low[i];
-    peak[i] = v > peak[i] ? v : peak[i];
-    is_bad |= !(v - v == 0);
   }
   return is_bad;
 }
@@ -130,8 +144,17 @@ static int win_wide(const mlim_row_work* work, const double* restrict value, dou
   double* restrict low, uint16_t* restrict winners, double* restrict peak)
 {
   const uint16_t label = work->label;
-  int is_bad = 0;
+  int64_t is_met = 0;
+  int64_t is_bad = 0;
   for (size_t i = 0; i < work->count; ++i)
+  {
+    const double v = value[i];
+    is_met |= v >= best[i] ? 1 : 0;
+    is_bad |= v - v == 0 ? 0 : 1;
+    low[i] = v < low[i] ? v : low[i];
+    peak[i] = v > peak[i] ? v : peak[i];
+  }
+  for (size_t i = 0; is_met && i < work->count; ++i)
   {
     const double v = value[i];
     const double b = best[i];
@@ -140,11 +163,8 @@ static int win_wide(const mlim_row_work* work, const double* restrict value, dou
     const uint16_t held = v == b ? tied : w;
     winners[i] = v > b ? label : held;
     best[i] = v > b ? v : b;
-    low[i] = v < low[i] ? v : low[i];
-    peak[i] = v > peak[i] ? v : peak[i];
-    is_bad |= !(v - v == 0);
   }
-  return is_bad;
+  return is_bad != 0;
 }
 
 /* ---- a row ---- */
