@@ -55,6 +55,48 @@ static size_t first_corner(const mlim_field* field, const int32_t cell[3])
                              ((size_t)cell[1] + (size_t)field->grid.dims[1] * (size_t)cell[2]);
 }
 
+/* Whether all grid points of a brick that does not stick out have one label. */
+static int has_one_label(const mlim_field* field, const int32_t first[3])
+{
+  const uint16_t* win = field->winners + first_corner(field, first);
+  const size_t nx = (size_t)field->grid.dims[0];
+  const size_t slice = nx * (size_t)field->grid.dims[1];
+  int differs = 0;
+  for (size_t row = 0; row < BRICK_SIDE * BRICK_SIDE && !differs; ++row)
+  {
+    const uint16_t* at = win + nx * (row % BRICK_SIDE) + slice * (row / BRICK_SIDE);
+    for (size_t x = 0; x < BRICK_SIDE; ++x)
+    {
+      differs |= (at[x] ^ win[0]) & ~MLIM_TIED_FLAG;
+    }
+  }
+  return !differs;
+}
+
+/* The same result as tell_mixed, for most bricks of an image. */
+static int tell_plain(const build_job* job, brick_work* work)
+{
+  const mlim_field* field = job->field;
+  const int32_t* cells = field->grid.cells;
+  const int32_t first[3] = { BRICK * work->at[0], BRICK * work->at[1], BRICK * work->at[2] };
+  if (first[0] + BRICK > cells[0] || first[1] + BRICK > cells[1] || first[2] + BRICK > cells[2] ||
+      !has_one_label(field, first))
+  {
+    return 0;
+  }
+  work->mixed = 0;
+  work->is_plain = 1;
+  work->words[0] = (uint32_t)(field->winners[first_corner(field, first)] & ~MLIM_TIED_FLAG);
+  for (int32_t row = 0; row < BRICK * BRICK; ++row)
+  {
+    const size_t y = (size_t)(first[1] + row % BRICK);
+    const size_t z = (size_t)(first[2] + row / BRICK);
+    memset(job->distance + (size_t)first[0] + (size_t)cells[0] * (y + (size_t)cells[1] * z),
+      MAX_CLEARANCE, BRICK);
+  }
+  return 1;
+}
+
 /* The words of uniform cells, and which ones are mixed. */
 static void tell_mixed(const build_job* job, brick_work* work)
 {
@@ -115,7 +157,10 @@ static void fill_brick(const build_job* job, mlim_field_brick* brick, brick_work
 {
   mlim_field* field = job->field;
   field_layer* layer = &field->layers[work->at[2]];
-  tell_mixed(job, work);
+  if (!tell_plain(job, work))
+  {
+    tell_mixed(job, work);
+  }
   if (work->mixed != 0)
   {
     add_mixed(job, brick, layer, work);

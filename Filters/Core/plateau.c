@@ -383,13 +383,18 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
   mlim_status status =
     b->list != NULL ? MLIM_OK : mlim_fail_memory(context, "the ties of the indicators");
   const size_t row = (size_t)b->samples->grid->dims[0];
-  for (size_t p = 0; p < points && status == MLIM_OK; ++p)
+  for (size_t first = 0; first < points && status == MLIM_OK; first += row)
   {
-    if ((b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p))
+    int has_failed = 0;
+    for (size_t p = first; p < first + row && !has_failed; ++p)
+    {
+      has_failed = (b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p);
+    }
+    if (has_failed)
     {
       status = mlim_fail_memory(context, "the ties of the indicators");
     }
-    else if (p % (LOOK_ROWS * row) == 0)
+    else if (first / row % LOOK_ROWS == 0)
     {
       status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
     }

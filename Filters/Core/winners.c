@@ -47,6 +47,7 @@ typedef struct tile
   char* best;              /* MLIM_ROW values a row */
   double* sum;             /* the same, with a complement; else NULL */
   mlim_row low, peak;
+  double most; /* the largest value */
   int has_bad;
 } tile;
 
@@ -63,7 +64,7 @@ static void add_to_sum(const tile* t, const mlim_array* array, size_t row)
   }
 }
 
-static void raise_peaks(const tile* t, size_t array)
+static void raise_peaks(tile* t, size_t array)
 {
   const size_t size = mlim_width_size(t->job->width);
   const char* row = (const char*)&t->peak;
@@ -76,6 +77,7 @@ static void raise_peaks(const tile* t, size_t array)
       most = value > most ? value : most;
     }
     const int32_t x = t->block[0] + (int32_t)(i / MLIM_PEAK_BLOCK);
+    t->most = most > t->most ? most : t->most;
     mlim_peaks_raise(mlim_peaks_of(t->job->peaks, x, t->block[1], t->block[2]) + array, most);
   }
 }
@@ -121,14 +123,12 @@ static void note_range(const tile* t, unit_range* out)
     const double low = mlim_row_value(width, (const char*)&t->low + i * size);
     range->min = low < range->min ? low : range->min;
   }
-  for (size_t row = 0; row < t->row_count; ++row)
+  range->max = t->most > range->max ? t->most : range->max;
+  for (size_t row = 0; t->sum != NULL && row < t->row_count; ++row)
   {
     for (size_t i = 0; i < t->count; ++i)
     {
-      const size_t n = row * MLIM_ROW + i;
-      const double best = mlim_row_value(width, t->best + n * size);
-      range->max = best > range->max ? best : range->max;
-      const double sum = t->sum != NULL ? t->sum[n] : -DBL_MAX;
+      const double sum = t->sum[row * MLIM_ROW + i];
       range->max_sum = sum > range->max_sum ? sum : range->max_sum;
     }
   }
@@ -144,6 +144,7 @@ static void win_tile(tile* t, unit_range* out)
     t->sum[n] = 0;
   }
   t->has_bad = 0;
+  t->most = -DBL_MAX;
   for (size_t row = 0; row < t->row_count; row += job->group)
   {
     const size_t left = t->row_count - row;
