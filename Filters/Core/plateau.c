@@ -14,8 +14,9 @@ enum
      wins after all. */
   SPARSE = 2,
   /* Between two looks at the host: */
-  LOOK_ROWS = 64,           /* rows of grid points, */
-  ROUND_STEPS = 1024 * 8192 /* or steps of a sweep */
+  LOOK_ROWS = 64,           /* rows of grid points */
+  LOOK_TIES = 1024 * 1024,  /* or ties when they are collected, */
+  ROUND_STEPS = 1024 * 8192 /* steps when they are smoothed */
 };
 
 static const double PROGRESS = 0.4;
@@ -383,6 +384,7 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
   mlim_status status =
     b->list != NULL ? MLIM_OK : mlim_fail_memory(context, "the ties of the indicators");
   const size_t row = (size_t)b->samples->grid->dims[0];
+  size_t looked_at = 0;
   for (size_t first = 0; first < points && status == MLIM_OK; first += row)
   {
     int has_failed = 0;
@@ -394,8 +396,9 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
     {
       status = mlim_fail_memory(context, "the ties of the indicators");
     }
-    else if (first / row % LOOK_ROWS == 0)
+    else if (first / row % LOOK_ROWS == 0 || b->out->count >= looked_at + LOOK_TIES)
     {
+      looked_at = b->out->count;
       status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
     }
   }
