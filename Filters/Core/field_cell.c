@@ -128,8 +128,7 @@ static void look_round(const mlim_field* field, const int32_t point[3], sight* o
 
 static double value_at(const mlim_field_source* source, int32_t label, size_t point)
 {
-  double value;
-  mlim_samples_row(source->samples, label, point, 1, &value);
+  const double value = mlim_samples_value(source->samples, label, point);
   const int is_tied = (source->field->winners[point] & MLIM_TIED_FLAG) != 0;
   return value + (is_tied ? mlim_plateau_bonus(source->plateau, point, label) : 0);
 }

@@ -40,6 +40,14 @@ int32_t mlim_samples_rule_label(const mlim_samples* samples);
 void mlim_samples_row(
   const mlim_samples* samples, int32_t label, size_t first, size_t count, double* out);
 
+/* The value of a label at one grid point. */
+static inline double mlim_samples_value(const mlim_samples* samples, int32_t label, size_t point)
+{
+  double value;
+  mlim_samples_row(samples, label, point, 1, &value);
+  return value;
+}
+
 /* Of indicators: how many points from x on along a row have the same list. */
 size_t mlim_samples_run(const mlim_samples* samples, size_t x);
 
