@@ -401,7 +401,7 @@ static void test_rules(void)
         s->arrays[l].id = l + (background != MLIM_BACKGROUND_ARRAY);
       }
       s->grid.background = (mlim_background)background;
-      s->grid.background_value = 85.5;
+      s->grid.background_value = has_blanks ? 85.5 : 85; /* the latter ties */
       for (size_t p = 0; p < s->points; ++p)
       {
         s->is_outside[p] = p % 14 > 10 || p % 101 == 0;
@@ -512,6 +512,32 @@ static void test_idle_labels(void)
   free_scene(s);
 }
 
+/* Rows of grid points along which the last two labels are equal everywhere: a plateau across z, of which each
+   gets one half. */
+static void test_tied_rows(void)
+{
+  static const int32_t dims[3] = { 9, 9, 10 };
+  static const double falling[10] = { 9, 8, 7, 5, 5, 5, 5, 3, 2, 1 };
+  scene* s = make_scene(dims, MLIM_FLOAT32, MLIM_FLOAT32, 0);
+  for (size_t p = 0; p < s->points; ++p)
+  {
+    put(s, LABELS - 2, p, falling[p / 81]);
+    put(s, LABELS - 1, p, 10 - falling[p / 81]);
+  }
+  s->grid.tie_breaking = MLIM_TIE_SMOOTH;
+  mlim_field* field = NULL;
+  CHECK(mlim_field_create(&s->grid, NULL, &field) == MLIM_OK);
+  for (double x = 0.5; x < 8 && field != NULL; x += 1)
+  {
+    const double below[3] = { x, 3.5, 4.4 };
+    const double above[3] = { x, 3.5, 4.6 };
+    CHECK(mlim_field_label(field, below) == LABELS - 2);
+    CHECK(mlim_field_label(field, above) == LABELS - 1);
+  }
+  mlim_field_free(field);
+  free_scene(s);
+}
+
 /* The message names the array and the first of the points, wherever they are. */
 static void test_not_finite(void)
 {
@@ -543,6 +569,7 @@ int main(void)
   test_rules();
   test_inner_label();
   test_idle_labels();
+  test_tied_rows();
   test_not_finite();
   return check_result();
 }
