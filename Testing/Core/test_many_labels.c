@@ -401,7 +401,7 @@ static void test_rules(void)
         s->arrays[l].id = l + (background != MLIM_BACKGROUND_ARRAY);
       }
       s->grid.background = (mlim_background)background;
-      s->grid.background_value = has_blanks ? 85.5 : 85; /* the latter ties */
+      s->grid.background_value = has_blanks ? 95.5 : 95; /* the latter ties */
       for (size_t p = 0; p < s->points; ++p)
       {
         s->is_outside[p] = p % 14 > 10 || p % 101 == 0;
