@@ -19,10 +19,10 @@ fail() {
 order='
 0 base          mlim vector faces triangle cubic tie
 1 services      memory status
-2 pieces        scalars label_map distance kernel morphology diffusion indicators samples
+2 pieces        scalars label_map distance kernel morphology diffusion indicators samples peaks
 2 pieces        label_sets point_grid
 2 solid         shape solid climb exchange slivers
-3 field         plateau field clearance field_build options components
+3 field         plateau winners field clearance field_build options components
 4 oracle        oracle crossings
 4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         radius_map span balls

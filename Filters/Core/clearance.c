@@ -1,45 +1,97 @@
 #include "clearance.h"
 
-/* Two passes, exact for the Chebyshev distance. The outside does not count: who goes there knows. */
-static void chamfer(uint8_t* distance, const int32_t dims[3])
+#include "memory.h"
+#include "status.h"
+
+enum
 {
-  const int64_t nx = dims[0];
-  const int64_t ny = dims[1];
-  const int64_t nz = dims[2];
-  for (int pass = 0; pass < 2; ++pass)
+  LOOK_CELLS = 1024 * 4096 /* between two looks at the host */
+};
+
+static const double PROGRESS = 0.9;
+
+/* One row's distances from those of the rows before it: `least` becomes their smallest one along the row. */
+static void take_rows(const uint8_t* const others[4], size_t count, uint8_t* restrict least)
+{
+  for (size_t x = 0; x < count; ++x)
   {
-    const int64_t step = pass == 0 ? -1 : 1;
-    for (int64_t i = 0; i < ny * nz; ++i)
+    least[x] = MAX_CLEARANCE;
+  }
+  for (int n = 0; n < 4; ++n)
+  {
+    const uint8_t* restrict other = others[n];
+    for (size_t x = 0; x < count; ++x)
     {
-      const int64_t row = pass == 0 ? i : ny * nz - 1 - i;
-      const int64_t y = row % ny;
-      const int64_t z = row / ny;
-      uint8_t* here = distance + row * nx;
-      const int64_t others[4][2] = { { -1, step }, { 0, step }, { 1, step }, { step, 0 } };
-      for (int n = 0; n < 4; ++n)
-      {
-        const int64_t oy = y + others[n][0];
-        const int64_t oz = z + others[n][1];
-        const int is_in = oy >= 0 && oy < ny && oz >= 0 && oz < nz;
-        const uint8_t* other = is_in ? distance + (oz * ny + oy) * nx : NULL;
-        for (int64_t x = 0; other != NULL && x < nx; ++x)
-        {
-          const int left = x > 0 ? other[x - 1] : MAX_CLEARANCE;
-          const int right = x + 1 < nx ? other[x + 1] : MAX_CLEARANCE;
-          int least = other[x] < left ? other[x] : left;
-          least = right < least ? right : least;
-          here[x] = here[x] > least + 1 ? (uint8_t)(least + 1) : here[x];
-        }
-      }
-      for (int64_t k = 0; k < nx; ++k)
-      {
-        const int64_t x = pass == 0 ? k : nx - 1 - k;
-        const int64_t before = x + step;
-        const int near = before >= 0 && before < nx ? here[before] : MAX_CLEARANCE;
-        here[x] = here[x] > near + 1 ? (uint8_t)(near + 1) : here[x];
-      }
+      const uint8_t value = other != NULL ? other[x] : MAX_CLEARANCE;
+      least[x] = value < least[x] ? value : least[x];
     }
   }
+}
+
+static uint8_t one_more(uint8_t distance)
+{
+  return (uint8_t)(distance + (distance < MAX_CLEARANCE));
+}
+
+/* `least` has a MAX_CLEARANCE before its first number and one after its last. */
+static void lower_row(
+  const uint8_t* restrict least, size_t count, int is_backward, uint8_t* restrict here)
+{
+  for (size_t x = 0; x < count; ++x)
+  {
+    const uint8_t left = least[x];
+    const uint8_t right = least[x + 2];
+    const uint8_t sides = left < right ? left : right;
+    const uint8_t most = one_more(least[x + 1] < sides ? least[x + 1] : sides);
+    here[x] = most < here[x] ? most : here[x];
+  }
+  uint8_t near = MAX_CLEARANCE;
+  for (size_t n = 0; n < count; ++n)
+  {
+    const size_t x = is_backward ? count - 1 - n : n;
+    const uint8_t most = one_more(near);
+    near = most < here[x] ? most : here[x];
+    here[x] = near;
+  }
+}
+
+/* Two passes, exact for the Chebyshev distance. The outside does not count: who goes there knows. `least` has
+   room for a row and two more. */
+static mlim_status chamfer(
+  uint8_t* distance, const int32_t dims[3], uint8_t* least, mlim_context* context)
+{
+  const size_t nx = (size_t)dims[0];
+  const int64_t ny = dims[1];
+  const int64_t nz = dims[2];
+  const int64_t rows = ny * nz;
+  const int64_t look = LOOK_CELLS / dims[0] + 1;
+  mlim_status status = MLIM_OK;
+  least[0] = MAX_CLEARANCE;
+  least[nx + 1] = MAX_CLEARANCE;
+  for (int64_t i = 0; i < 2 * rows && status == MLIM_OK; ++i)
+  {
+    const int is_backward = i >= rows;
+    const int64_t row = is_backward ? 2 * rows - 1 - i : i;
+    const int64_t step = is_backward ? 1 : -1;
+    const int64_t y = row % ny;
+    const int64_t z = row / ny;
+    const int64_t before[4][2] = { { -1, step }, { 0, step }, { 1, step }, { step, 0 } };
+    const uint8_t* others[4];
+    for (int n = 0; n < 4; ++n)
+    {
+      const int64_t oy = y + before[n][0];
+      const int64_t oz = z + before[n][1];
+      const int is_in = oy >= 0 && oy < ny && oz >= 0 && oz < nz;
+      others[n] = is_in ? distance + (size_t)(oz * ny + oy) * nx : NULL;
+    }
+    take_rows(others, nx, least + 1);
+    lower_row(least, nx, is_backward, distance + (size_t)row * nx);
+    if (i % look == 0)
+    {
+      status = mlim_progress(context, MLIM_STAGE_FIELD, PROGRESS);
+    }
+  }
+  return status;
 }
 
 /* The least distance of the cells of a brick, and that of each of them into its word if it has some. */
@@ -72,9 +124,8 @@ static int store_brick(
   return least;
 }
 
-void mlim_clearance_measure(mlim_field* field, uint8_t* distance)
+static void store_all(mlim_field* field, const uint8_t* distance)
 {
-  chamfer(distance, field->grid.cells);
   int32_t brick[3];
   uint32_t* coarse = field->coarse;
   for (brick[2] = 0; brick[2] < field->bricks[2]; ++brick[2])
@@ -92,4 +143,17 @@ void mlim_clearance_measure(mlim_field* field, uint8_t* distance)
       }
     }
   }
+}
+
+mlim_status mlim_clearance_measure(mlim_field* field, uint8_t* distance, mlim_context* context)
+{
+  uint8_t* least = mlim_allocate((size_t)field->grid.cells[0] + 2, 1);
+  const mlim_status status = least != NULL ? chamfer(distance, field->grid.cells, least, context)
+                                           : mlim_fail_memory(context, "the field's index");
+  if (status == MLIM_OK)
+  {
+    store_all(field, distance);
+  }
+  mlim_release(least);
+  return status;
 }

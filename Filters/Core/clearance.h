@@ -6,6 +6,6 @@
 
 /* Fills the clearances into the words of cells and bricks. `distance`, one a cell: 0 in mixed cells,
    MAX_CLEARANCE in others; overwritten. */
-void mlim_clearance_measure(mlim_field* field, uint8_t* distance);
+mlim_status mlim_clearance_measure(mlim_field* field, uint8_t* distance, mlim_context* context);
 
 #endif

@@ -1,88 +1,20 @@
-/* Builds the field's index from the arrays: the winner at every grid point, the words of all cells,
-   and the clearances for skipping empty space. */
+/* Builds the field's index from the winners at the grid points: the words of all cells, and the clearances
+   for skipping empty space. */
 #include "clearance.h"
 #include "field_cell.h"
 #include "memory.h"
 #include "status.h"
 #include "vector.h"
+#include "winners.h"
 
 #include <math.h>
 
-/* ---- winners ---- */
-
 typedef struct build_job
 {
-  const mlim_samples* samples;
+  mlim_field_source source;
   mlim_field* field;
-  mlim_plateau plateau;
   uint8_t* distance; /* a cell: Chebyshev distance to the nearest mixed one or to the outside */
-  int has_failed;
 } build_job;
-
-/* One run of points along x whose labels are the same list. */
-typedef struct win_run
-{
-  size_t first, count;
-  const uint16_t* labels; /* ascending, at least one */
-  size_t label_count;
-  double *best, *value; /* scratch, `count` each */
-} win_run;
-
-static void win_along(const mlim_samples* samples, const win_run* run, uint16_t* win)
-{
-  mlim_samples_row(samples, run->labels[0], run->first, run->count, run->best);
-  for (size_t x = 0; x < run->count; ++x)
-  {
-    win[x] = run->labels[0];
-  }
-  for (size_t n = 1; n < run->label_count; ++n)
-  {
-    const uint16_t label = run->labels[n];
-    mlim_samples_row(samples, label, run->first, run->count, run->value);
-    for (size_t x = 0; x < run->count; ++x)
-    {
-      const int is_better = run->value[x] > run->best[x];
-      const int is_tied = run->value[x] == run->best[x];
-      run->best[x] = is_better ? run->value[x] : run->best[x];
-      win[x] = is_better ? label : is_tied ? (uint16_t)(win[x] | MLIM_TIED_FLAG) : win[x];
-    }
-  }
-}
-
-static int win_slice(const mlim_samples* samples, size_t z, uint16_t* winners)
-{
-  const size_t nx = (size_t)samples->grid->dims[0];
-  const size_t ny = (size_t)samples->grid->dims[1];
-  double* best = mlim_allocate(2 * nx, sizeof *best);
-  uint16_t* labels = mlim_allocate((size_t)samples->label_count + 1, sizeof *labels);
-  const int has_memory = best != NULL && labels != NULL;
-  for (size_t y = 0; y < ny && has_memory; ++y)
-  {
-    win_run run = { .labels = labels, .best = best, .value = best + nx };
-    for (size_t x = 0; x < nx; x += run.count)
-    {
-      run.first = x + nx * (y + ny * z);
-      run.count = mlim_samples_run(samples, x);
-      run.label_count = mlim_samples_list(samples, &run.first, 1, labels);
-      win_along(samples, &run, winners + run.first);
-    }
-  }
-  mlim_release(best);
-  mlim_release(labels);
-  return !has_memory;
-}
-
-static void win_body(void* data, size_t begin, size_t end)
-{
-  build_job* job = (build_job*)data;
-  for (size_t z = begin; z < end; ++z)
-  {
-    if (win_slice(job->samples, z, job->field->winners))
-    {
-      job->has_failed = 1;
-    }
-  }
-}
 
 /* ---- bricks ---- */
 
@@ -96,60 +28,163 @@ static void corner_offsets(const mlim_field* field, size_t corner[8])
   }
 }
 
-static void fill_brick(const build_job* job, const int32_t brick[3], const size_t corner[8])
+/* A brick on its way into a layer. */
+typedef struct brick_work
 {
-  mlim_field* field = job->field;
-  field_layer* layer = &field->layers[brick[2]];
-  const mlim_field_source source = { job->samples, field, &job->plateau };
-  uint32_t words[BRICK_CELLS] = { 0 };
+  int32_t at[3];
+  const size_t* corner; /* borrowed; the offsets of a cell's corners */
+  uint32_t words[BRICK_CELLS];
+  uint64_t mixed; /* a bit a slot */
+  int is_plain;   /* uniform, with one label, all of it */
+} brick_work;
+
+/* Its cell in a slot. 0: the brick sticks out of the grid there. */
+static int find_cell(
+  const mlim_field* field, const brick_work* work, uint32_t slot, int32_t cell[3])
+{
+  cell[0] = BRICK * work->at[0] + (int32_t)(slot & 3);
+  cell[1] = BRICK * work->at[1] + (int32_t)(slot >> 2 & 3);
+  cell[2] = BRICK * work->at[2] + (int32_t)(slot >> 4);
+  return cell[0] < field->grid.cells[0] && cell[1] < field->grid.cells[1] &&
+         cell[2] < field->grid.cells[2];
+}
+
+static size_t first_corner(const mlim_field* field, const int32_t cell[3])
+{
+  return (size_t)cell[0] + (size_t)field->grid.dims[0] *
+                             ((size_t)cell[1] + (size_t)field->grid.dims[1] * (size_t)cell[2]);
+}
+
+/* Whether all grid points of a brick that does not stick out have one label. */
+static int has_one_label(const mlim_field* field, const int32_t first[3])
+{
+  const uint16_t* win = field->winners + first_corner(field, first);
+  const size_t nx = (size_t)field->grid.dims[0];
+  const size_t slice = nx * (size_t)field->grid.dims[1];
+  int differs = 0;
+  for (size_t row = 0; row < BRICK_SIDE * BRICK_SIDE && !differs; ++row)
+  {
+    const uint16_t* at = win + nx * (row % BRICK_SIDE) + slice * (row / BRICK_SIDE);
+    for (size_t x = 0; x < BRICK_SIDE; ++x)
+    {
+      differs |= (at[x] ^ win[0]) & ~MLIM_TIED_FLAG;
+    }
+  }
+  return !differs;
+}
+
+/* The same result as tell_mixed, for most bricks of an image. */
+static int tell_plain(const build_job* job, brick_work* work)
+{
+  const mlim_field* field = job->field;
+  const int32_t* cells = field->grid.cells;
+  const int32_t first[3] = { BRICK * work->at[0], BRICK * work->at[1], BRICK * work->at[2] };
+  if (first[0] + BRICK > cells[0] || first[1] + BRICK > cells[1] || first[2] + BRICK > cells[2] ||
+      !has_one_label(field, first))
+  {
+    return 0;
+  }
+  work->mixed = 0;
+  work->is_plain = 1;
+  work->words[0] = (uint32_t)(field->winners[first_corner(field, first)] & ~MLIM_TIED_FLAG);
+  for (int32_t row = 0; row < BRICK * BRICK; ++row)
+  {
+    const size_t y = (size_t)(first[1] + row % BRICK);
+    const size_t z = (size_t)(first[2] + row / BRICK);
+    memset(job->distance + (size_t)first[0] + (size_t)cells[0] * (y + (size_t)cells[1] * z),
+      MAX_CLEARANCE, BRICK);
+  }
+  return 1;
+}
+
+/* The words of uniform cells, and which ones are mixed. */
+static void tell_mixed(const build_job* job, brick_work* work)
+{
+  const mlim_field* field = job->field;
   uint32_t uniform = UINT32_MAX;
-  int is_plain = 1;
+  work->mixed = 0;
+  work->is_plain = 1;
   for (uint32_t slot = 0; slot < BRICK_CELLS; ++slot)
   {
-    const int32_t cell[3] = { 4 * brick[0] + (int32_t)(slot & 3),
-      4 * brick[1] + (int32_t)(slot >> 2 & 3), 4 * brick[2] + (int32_t)(slot >> 4) };
-    if (cell[0] >= field->grid.cells[0] || cell[1] >= field->grid.cells[1] ||
-        cell[2] >= field->grid.cells[2])
+    int32_t cell[3];
+    work->words[slot] = 0;
+    if (!find_cell(field, work, slot, cell))
     {
       continue;
     }
-    const size_t first =
-      (size_t)cell[0] + (size_t)field->grid.dims[0] *
-                          ((size_t)cell[1] + (size_t)field->grid.dims[1] * (size_t)cell[2]);
-    const uint16_t* win = field->winners + first;
+    const uint16_t* win = field->winners + first_corner(field, cell);
     int differs = 0;
     for (int c = 1; c < 8; ++c)
     {
-      differs |= (win[corner[c]] ^ win[0]) & ~MLIM_TIED_FLAG;
+      differs |= (win[work->corner[c]] ^ win[0]) & ~MLIM_TIED_FLAG;
     }
-    words[slot] = differs ? mlim_field_add_mixed(&source, layer, first, corner)
-                          : (uint32_t)(win[0] & ~MLIM_TIED_FLAG);
-    if (layer->has_failed)
-    {
-      return;
-    }
-    uniform = uniform == UINT32_MAX ? words[slot] : uniform;
-    is_plain &= !differs && words[slot] == uniform;
+    work->mixed |= (uint64_t)(differs != 0) << slot;
+    work->words[slot] = differs ? 0 : (uint32_t)(win[0] & ~MLIM_TIED_FLAG);
+    uniform = uniform == UINT32_MAX ? work->words[slot] : uniform;
+    work->is_plain &= !differs && work->words[slot] == uniform;
     const size_t at =
       (size_t)cell[0] + (size_t)field->grid.cells[0] *
                           ((size_t)cell[1] + (size_t)field->grid.cells[1] * (size_t)cell[2]);
     job->distance[at] = differs ? 0 : MAX_CLEARANCE;
   }
-  uint32_t* coarse =
-    &field->coarse[(size_t)brick[0] +
-                   (size_t)field->bricks[0] *
-                     ((size_t)brick[1] + (size_t)field->bricks[1] * (size_t)brick[2])];
-  if (is_plain)
-  {
-    *coarse = uniform;
-    return;
-  }
-  if (mlim_reserve(&layer->words, &layer->brick_capacity, layer->brick_count + 1, sizeof words))
+}
+
+/* The words of mixed cells. */
+static void add_mixed(
+  const build_job* job, mlim_field_brick* brick, field_layer* layer, brick_work* work)
+{
+  const mlim_field_source* source = &job->source;
+  if (source->samples->grid->indicators == NULL &&
+      mlim_field_brick_read(source, work->at, work->mixed, brick))
   {
     layer->has_failed = 1;
     return;
   }
-  memcpy(layer->words + layer->brick_count * BRICK_CELLS, words, sizeof words);
+  for (uint32_t slot = 0; slot < BRICK_CELLS && !layer->has_failed; ++slot)
+  {
+    int32_t cell[3];
+    if (work->mixed >> slot & 1 && find_cell(job->field, work, slot, cell))
+    {
+      const mlim_field_place place = {
+        .first = first_corner(job->field, cell), .corner = work->corner, .slot = slot
+      };
+      work->words[slot] = mlim_field_add_mixed(source, brick, layer, &place);
+    }
+  }
+}
+
+static void fill_brick(const build_job* job, mlim_field_brick* brick, brick_work* work)
+{
+  mlim_field* field = job->field;
+  field_layer* layer = &field->layers[work->at[2]];
+  if (!tell_plain(job, work))
+  {
+    tell_mixed(job, work);
+  }
+  if (work->mixed != 0)
+  {
+    add_mixed(job, brick, layer, work);
+  }
+  if (layer->has_failed)
+  {
+    return;
+  }
+  uint32_t* coarse =
+    &field->coarse[(size_t)work->at[0] +
+                   (size_t)field->bricks[0] *
+                     ((size_t)work->at[1] + (size_t)field->bricks[1] * (size_t)work->at[2])];
+  if (work->is_plain)
+  {
+    *coarse = work->words[0];
+    return;
+  }
+  if (mlim_reserve(
+        &layer->words, &layer->brick_capacity, layer->brick_count + 1, sizeof work->words))
+  {
+    layer->has_failed = 1;
+    return;
+  }
+  memcpy(layer->words + layer->brick_count * BRICK_CELLS, work->words, sizeof work->words);
   *coarse = (uint32_t)MIXED | (uint32_t)layer->brick_count;
   ++layer->brick_count;
 }
@@ -159,21 +194,25 @@ static void layer_body(void* data, size_t begin, size_t end)
   const build_job* job = (const build_job*)data;
   size_t corner[8];
   corner_offsets(job->field, corner);
+  mlim_field_brick brick;
+  const int has_brick = mlim_field_brick_create(&job->source, &brick) == MLIM_OK;
   for (size_t z = begin; z < end; ++z)
   {
     field_layer* layer = &job->field->layers[z];
-    layer->list = mlim_allocate((size_t)job->samples->label_count + 1, sizeof *layer->list);
-    layer->has_failed = layer->list == NULL;
+    layer->list = mlim_allocate((size_t)job->source.samples->label_count + 1, sizeof *layer->list);
+    layer->has_failed = layer->list == NULL || !has_brick;
     for (int32_t y = 0; y < job->field->bricks[1] && !layer->has_failed; ++y)
     {
       for (int32_t x = 0; x < job->field->bricks[0] && !layer->has_failed; ++x)
       {
-        fill_brick(job, (const int32_t[3]){ x, y, (int32_t)z }, corner);
+        brick_work work = { .at = { x, y, (int32_t)z }, .corner = corner };
+        fill_brick(job, &brick, &work);
       }
     }
     mlim_release(layer->list);
     layer->list = NULL;
   }
+  mlim_field_brick_free(&brick);
 }
 
 /* ---- all of it ---- */
@@ -260,30 +299,19 @@ static mlim_status check_ids(
   return MLIM_OK;
 }
 
+/* The labels of all grid points, and where arrays matter. */
+static mlim_status find_points(mlim_samples* samples, mlim_context* context, mlim_field* field,
+  mlim_peaks* peaks, mlim_plateau* plateau)
+{
+  const mlim_status status = mlim_winners_find(samples, context, field->winners, peaks);
+  return status != MLIM_OK ? status
+                           : mlim_plateau_find(samples, peaks, context, field->winners, plateau);
+}
+
 static mlim_status build_index(build_job* job, mlim_context* context)
 {
   mlim_field* field = job->field;
-  mlim_status status =
-    mlim_parallel_stage(context, &(mlim_stage_work){ .count = (size_t)field->grid.dims[2],
-                                   .body = win_body,
-                                   .job = job,
-                                   .stage = MLIM_STAGE_FIELD,
-                                   .from = 0.1,
-                                   .to = 0.4 });
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
-  if (job->has_failed)
-  {
-    return mlim_fail_memory(context, "the labels of the grid points");
-  }
-  status = mlim_plateau_find(job->samples, context, field->winners, &job->plateau);
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
-  status = mlim_progress(context, MLIM_STAGE_FIELD, 0.4);
+  mlim_status status = mlim_progress(context, MLIM_STAGE_FIELD, 0.4);
   if (status != MLIM_OK)
   {
     return status;
@@ -316,11 +344,7 @@ static mlim_status build_index(build_job* job, mlim_context* context)
     field->winners[p] = (uint16_t)(field->winners[p] & ~MLIM_TIED_FLAG);
   }
   status = mlim_progress(context, MLIM_STAGE_FIELD, 0.9);
-  if (status == MLIM_OK)
-  {
-    mlim_clearance_measure(field, job->distance);
-  }
-  return status;
+  return status != MLIM_OK ? status : mlim_clearance_measure(field, job->distance, context);
 }
 
 mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim_field** out)
@@ -330,8 +354,10 @@ mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim
     return mlim_fail(context, MLIM_INVALID_ARGUMENT, "The grid or its result is NULL.");
   }
   *out = NULL;
-  build_job job = { 0 };
   mlim_samples samples;
+  mlim_peaks peaks = { 0 };
+  mlim_plateau plateau = { 0 };
+  build_job job = { 0 };
   mlim_field* field = NULL;
   mlim_status status = mlim_progress(context, MLIM_STAGE_FIELD, 0);
   if (status == MLIM_OK)
@@ -358,7 +384,12 @@ mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim
   {
     goto done;
   }
-  job = (build_job){ .samples = &samples, .field = field };
+  status = find_points(&samples, context, field, &peaks, &plateau);
+  if (status != MLIM_OK)
+  {
+    goto done;
+  }
+  job = (build_job){ .source = { &samples, field, &plateau, &peaks }, .field = field };
   job.distance = mlim_allocate(
     (size_t)field->grid.cells[0] * (size_t)field->grid.cells[1] * (size_t)field->grid.cells[2], 1);
   if (job.distance == NULL)
@@ -372,7 +403,8 @@ mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim
     status = mlim_progress(context, MLIM_STAGE_FIELD, 1);
   }
 done:
-  mlim_plateau_free(&job.plateau);
+  mlim_plateau_free(&plateau);
+  mlim_peaks_free(&peaks);
   mlim_release(job.distance);
   if (status != MLIM_OK)
   {

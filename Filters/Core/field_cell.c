@@ -15,9 +15,23 @@ typedef struct rivals
   double best[8]; /* the largest value at each corner */
 } rivals;
 
-static void read_corners(const mlim_field_source* source, int32_t label, size_t first,
-  const size_t corner[8], double out[8])
+typedef struct mixed_cell
 {
+  const mlim_field_source* source;
+  const mlim_field_brick* brick;
+  const mlim_field_place* place;
+} mixed_cell;
+
+static int has_indicators(const mlim_field_source* source)
+{
+  return source->samples->grid->indicators != NULL;
+}
+
+static void read_corners(const mixed_cell* cell, int32_t label, double out[8])
+{
+  const mlim_field_source* source = cell->source;
+  const size_t first = cell->place->first;
+  const size_t* corner = cell->place->corner;
   mlim_samples_corners(source->samples, label, first, out);
   for (int c = 0; c < 8 && source->plateau->count > 0; ++c)
   {
@@ -28,13 +42,14 @@ static void read_corners(const mlim_field_source* source, int32_t label, size_t 
   }
 }
 
-static void find_rivals(
-  const mlim_field_source* source, size_t first, const size_t corner[8], rivals* out)
+static void find_rivals(const mixed_cell* cell, rivals* out)
 {
+  const mlim_field_place* place = cell->place;
   out->count = 0;
   for (int c = 0; c < 8; ++c)
   {
-    const int32_t label = source->field->winners[first + corner[c]] & ~MLIM_TIED_FLAG;
+    const int32_t label =
+      cell->source->field->winners[place->first + place->corner[c]] & ~MLIM_TIED_FLAG;
     int32_t r = 0;
     while (r < out->count && out->labels[r] != label)
     {
@@ -43,7 +58,15 @@ static void find_rivals(
     if (r == out->count)
     {
       out->labels[r] = label;
-      read_corners(source, label, first, corner, out->values[r]);
+      if (has_indicators(cell->source))
+      {
+        read_corners(cell, label, out->values[r]);
+      }
+      else
+      {
+        const size_t n = (size_t)mlim_field_brick_find(cell->brick, label);
+        mlim_field_brick_corners(cell->brick, n, place->slot, out->values[r]);
+      }
       ++out->count;
     }
     out->best[c] = out->values[r][c];
@@ -105,21 +128,20 @@ static void look_round(const mlim_field* field, const int32_t point[3], sight* o
 
 static double value_at(const mlim_field_source* source, int32_t label, size_t point)
 {
-  double value;
-  mlim_samples_row(source->samples, label, point, 1, &value);
+  const double value = mlim_samples_value(source->samples, label, point);
   const int is_tied = (source->field->winners[point] & MLIM_TIED_FLAG) != 0;
   return value + (is_tied ? mlim_plateau_bonus(source->plateau, point, label) : 0);
 }
 
 /* Where a label is not seen it is at most second among those that are. The corrected value depends
    on the grid point alone, so all cells that share it agree. */
-static void lower_unseen(const mlim_field_source* source, int32_t label, size_t first,
-  const size_t corner[8], double value[8])
+static void lower_unseen(const mixed_cell* cell, int32_t label, double value[8])
 {
+  const mlim_field_source* source = cell->source;
   const int32_t* dims = source->field->grid.dims;
   for (int c = 0; c < 8; ++c)
   {
-    const size_t point = first + corner[c];
+    const size_t point = cell->place->first + cell->place->corner[c];
     const int32_t at[3] = { (int32_t)(point % (size_t)dims[0]),
       (int32_t)(point / (size_t)dims[0] % (size_t)dims[1]),
       (int32_t)(point / ((size_t)dims[0] * (size_t)dims[1])) };
@@ -162,19 +184,33 @@ static uint32_t float_word(double value)
   return word;
 }
 
-uint32_t mlim_field_add_mixed(
-  const mlim_field_source* source, field_layer* layer, size_t first, const size_t corner[8])
+/* The labels that may be candidates. */
+static size_t list_labels(const mixed_cell* cell, uint16_t* scratch, const uint16_t** out)
 {
-  const mlim_samples* samples = source->samples;
-  rivals rival;
-  find_rivals(source, first, corner, &rival);
-  const size_t start = layer->pool_count;
+  if (!has_indicators(cell->source))
+  {
+    *out = cell->brick->labels;
+    return cell->brick->count;
+  }
   size_t points[8];
   for (int c = 0; c < 8; ++c)
   {
-    points[c] = first + corner[c];
+    points[c] = cell->place->first + cell->place->corner[c];
   }
-  const size_t labels = mlim_samples_list(samples, points, 8, layer->list);
+  *out = scratch;
+  return mlim_samples_list(cell->source->samples, points, 8, scratch);
+}
+
+uint32_t mlim_field_add_mixed(const mlim_field_source* source, const mlim_field_brick* brick,
+  field_layer* layer, const mlim_field_place* place)
+{
+  const mlim_samples* samples = source->samples;
+  const mixed_cell cell = { source, brick, place };
+  rivals rival;
+  find_rivals(&cell, &rival);
+  const size_t start = layer->pool_count;
+  const uint16_t* list;
+  const size_t labels = list_labels(&cell, layer->list, &list);
   if (start + 1 + 9 * labels > DETAIL ||
       mlim_reserve(&layer->pool, &layer->pool_capacity, start + 1 + 9 * labels, sizeof(uint32_t)))
   {
@@ -187,16 +223,23 @@ uint32_t mlim_field_add_mixed(
   uint32_t* values = entry + 1 + labels;
   for (size_t n = 0; n < labels; ++n)
   {
-    const int32_t l = layer->list[n];
+    const int32_t l = list[n];
     double value[8];
-    read_corners(source, l, first, corner, value);
+    if (has_indicators(source))
+    {
+      read_corners(&cell, l, value);
+    }
+    else
+    {
+      mlim_field_brick_corners(brick, n, place->slot, value);
+    }
     if (!is_candidate(&rival, l, value))
     {
       continue;
     }
     if (samples->grid->unseen == MLIM_UNSEEN_DROP && !is_rival(&rival, l))
     {
-      lower_unseen(source, l, first, corner, value);
+      lower_unseen(&cell, l, value);
       if (!is_candidate(&rival, l, value))
       {
         continue;

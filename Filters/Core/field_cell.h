@@ -2,21 +2,22 @@
 #ifndef mlim_field_cell_h
 #define mlim_field_cell_h
 
+#include "field_brick.h"
 #include "field_index.h"
-#include "plateau.h"
-#include "samples.h"
 
-/* What the field is made from, once the winners at the grid points are known. */
-typedef struct mlim_field_source
+/* A mixed cell: its first corner's index among the grid points, the offsets of the others, and its place
+   in its brick. */
+typedef struct mlim_field_place
 {
-  const mlim_samples* samples;
-  const mlim_field* field;
-  const mlim_plateau* plateau;
-} mlim_field_source;
+  size_t first;
+  const size_t* corner; /* borrowed; 8 */
+  uint32_t slot;
+} mlim_field_place;
 
-/* Appends the candidates of the cell with the first corner `first` to the layer's pool; the result is
-   the cell's word. Sets the layer's has_failed without memory, or if the pool is full. */
-uint32_t mlim_field_add_mixed(
-  const mlim_field_source* source, field_layer* layer, size_t first, const size_t corner[8]);
+/* Appends the candidates of the cell to the layer's pool; the result is the cell's word. `brick` holds the
+   values of its brick; of indicators, it is not read. Sets the layer's has_failed without memory, or if the
+   pool is full. */
+uint32_t mlim_field_add_mixed(const mlim_field_source* source, const mlim_field_brick* brick,
+  field_layer* layer, const mlim_field_place* place);
 
 #endif

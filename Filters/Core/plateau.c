@@ -1,4 +1,4 @@
-#include "plateau.h"
+#include "plateau_smooth.h"
 
 #include "memory.h"
 #include "status.h"
@@ -7,51 +7,51 @@
 
 enum
 {
-  /* Gauss-Seidel sweeps, forward and back: a plateau of 20 cells across is smooth after them;
-     beyond, the middle is still split by the side that is nearer. */
-  SWEEPS = 64,
   /* With more ties than one grid point in this many, the indicators say nothing: the lowest index
      wins after all. */
   SPARSE = 2,
-  NO_TIE = -1
+  LOOK_ROWS = 64,        /* rows of grid points between two looks at the host, */
+  LOOK_TIES = 256 * 1024 /* or ties */
 };
 
 /* A bonus is this part of a difference of indicators: next to a tied point the interface moves by
    less than this part of a cell. */
 static const double BONUS_PART = 0.0009765625;
 
-/* The six neighbours of a tied label: another tied one, or a value that stands fast. */
-typedef struct stencil
-{
-  int32_t tied[6];
-  double fixed; /* sum over the others, relative to the largest value at each */
-  int32_t count;
-} stencil;
-
 typedef struct builder
 {
   const mlim_samples* samples;
+  const mlim_peaks* peaks;
   const uint16_t* winners;
   mlim_plateau* out;
-  stencil* stencils;
   uint16_t* list; /* the labels at a point */
   size_t capacity;
 } builder;
 
-static double value_at(const mlim_samples* samples, int32_t label, size_t point)
+/* Labels among which are all that have the value at a point. */
+static size_t list_labels(const builder* b, size_t point, double value)
 {
-  double value;
-  mlim_samples_row(samples, label, point, 1, &value);
-  return value;
+  const mlim_grid* grid = b->samples->grid;
+  const size_t nx = (size_t)grid->dims[0];
+  const size_t ny = (size_t)grid->dims[1];
+  if (grid->indicators != NULL)
+  {
+    return mlim_samples_list(b->samples, &point, 1, b->list);
+  }
+  const int32_t x = (int32_t)(point % nx);
+  const int32_t y = (int32_t)(point / nx % ny);
+  const int32_t z = (int32_t)(point / (nx * ny));
+  const mlim_point_box box = { { x, y, z }, { x, y, z } };
+  return mlim_peaks_list(b->peaks, &box, value, b->list);
 }
 
 static int add_point(builder* b, size_t point)
 {
-  const double best = value_at(b->samples, b->winners[point] & ~MLIM_TIED_FLAG, point);
-  const size_t labels = mlim_samples_list(b->samples, &point, 1, b->list);
+  const double best = mlim_samples_value(b->samples, b->winners[point] & ~MLIM_TIED_FLAG, point);
+  const size_t labels = list_labels(b, point, best);
   for (size_t n = 0; n < labels; ++n)
   {
-    if (value_at(b->samples, b->list[n], point) != best)
+    if (mlim_samples_value(b->samples, b->list[n], point) != best)
     {
       continue;
     }
@@ -84,70 +84,6 @@ static const mlim_tied* find_tied(const mlim_plateau* plateau, size_t point, int
   const int is_found =
     low < plateau->count && plateau->tied[low].point == point && plateau->tied[low].label == label;
   return is_found ? &plateau->tied[low] : NULL;
-}
-
-static stencil look_round(const builder* b, const mlim_tied* tied)
-{
-  const mlim_grid* grid = b->samples->grid;
-  const size_t nx = (size_t)grid->dims[0];
-  const size_t ny = (size_t)grid->dims[1];
-  const size_t steps[3] = { 1, nx, nx * ny };
-  const size_t at[3] = { tied->point % nx, tied->point / nx % ny, tied->point / steps[2] };
-  stencil out = { 0 };
-  for (int side = 0; side < 6; ++side)
-  {
-    const int axis = side >> 1;
-    out.tied[side] = NO_TIE;
-    if (side & 1 ? at[axis] + 1 >= (size_t)grid->dims[axis] : at[axis] == 0)
-    {
-      continue;
-    }
-    const size_t q = side & 1 ? tied->point + steps[axis] : tied->point - steps[axis];
-    const mlim_tied* other = find_tied(b->out, q, tied->label);
-    ++out.count;
-    if (other != NULL)
-    {
-      out.tied[side] = (int32_t)(other - b->out->tied);
-      continue;
-    }
-    out.fixed += value_at(b->samples, tied->label, q) -
-                 value_at(b->samples, b->winners[q] & ~MLIM_TIED_FLAG, q);
-  }
-  return out;
-}
-
-static double mean_round(const mlim_plateau* plateau, const stencil* s)
-{
-  double sum = s->fixed;
-  for (int side = 0; side < 6; ++side)
-  {
-    sum += s->tied[side] != NO_TIE ? plateau->tied[s->tied[side]].bonus : 0;
-  }
-  return sum / s->count;
-}
-
-static mlim_status smooth(builder* b, mlim_context* context)
-{
-  const size_t count = b->out->count;
-  b->stencils = mlim_allocate(count, sizeof *b->stencils);
-  if (b->stencils == NULL)
-  {
-    return mlim_fail_memory(context, "the ties of the indicators");
-  }
-  for (size_t k = 0; k < count; ++k)
-  {
-    b->stencils[k] = look_round(b, &b->out->tied[k]);
-  }
-  for (int sweep = 0; sweep < SWEEPS; ++sweep)
-  {
-    for (size_t k = 0; k < count; ++k)
-    {
-      const size_t n = sweep & 1 ? count - 1 - k : k;
-      b->out->tied[n].bonus = mean_round(b->out, &b->stencils[n]);
-    }
-  }
-  mlim_release(b->stencils);
-  return MLIM_OK;
 }
 
 /* Shifts the bonuses of each point so that the best is 0, scales them, and names the winner. */
@@ -183,15 +119,31 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
     return MLIM_OK;
   }
   b->list = mlim_allocate((size_t)b->samples->label_count + 1, sizeof *b->list);
-  int has_failed = b->list == NULL;
-  for (size_t p = 0; p < points && !has_failed; ++p)
+  mlim_status status =
+    b->list != NULL ? MLIM_OK : mlim_fail_memory(context, "the ties of the indicators");
+  const size_t row = (size_t)b->samples->grid->dims[0];
+  size_t looked_at = 0;
+  for (size_t first = 0; first < points && status == MLIM_OK; first += row)
   {
-    has_failed = (b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p);
+    int has_failed = 0;
+    for (size_t p = first; p < first + row && !has_failed; ++p)
+    {
+      has_failed = (b->winners[p] & MLIM_TIED_FLAG) && add_point(b, p);
+    }
+    if (has_failed)
+    {
+      status = mlim_fail_memory(context, "the ties of the indicators");
+    }
+    else if (first / row % LOOK_ROWS == 0 || b->out->count >= looked_at + LOOK_TIES)
+    {
+      looked_at = b->out->count;
+      status = mlim_progress(context, MLIM_STAGE_FIELD, MLIM_PLATEAU_PROGRESS);
+    }
   }
   mlim_release(b->list);
-  if (has_failed)
+  if (status != MLIM_OK)
   {
-    return mlim_fail_memory(context, "the ties of the indicators");
+    return status;
   }
   return b->out->count < INT32_MAX ? MLIM_OK
                                    : mlim_fail(context, MLIM_INVALID_ARGUMENT,
@@ -200,8 +152,8 @@ static mlim_status collect(builder* b, size_t points, mlim_context* context)
                                        b->out->count, INT32_MAX);
 }
 
-mlim_status mlim_plateau_find(
-  const mlim_samples* samples, mlim_context* context, uint16_t* winners, mlim_plateau* out)
+mlim_status mlim_plateau_find(const mlim_samples* samples, const mlim_peaks* peaks,
+  mlim_context* context, uint16_t* winners, mlim_plateau* out)
 {
   *out = (mlim_plateau){ 0 };
   const int32_t* dims = samples->grid->dims;
@@ -209,11 +161,11 @@ mlim_status mlim_plateau_find(
   mlim_status status = MLIM_OK;
   if (samples->grid->tie_breaking == MLIM_TIE_SMOOTH)
   {
-    builder b = { .samples = samples, .winners = winners, .out = out };
+    builder b = { .samples = samples, .peaks = peaks, .winners = winners, .out = out };
     status = collect(&b, points, context);
     if (status == MLIM_OK)
     {
-      status = smooth(&b, context);
+      status = mlim_plateau_smooth(samples, context, winners, out);
     }
   }
   settle(out, winners);

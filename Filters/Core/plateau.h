@@ -7,7 +7,7 @@
 #ifndef mlim_plateau_h
 #define mlim_plateau_h
 
-#include "samples.h"
+#include "peaks.h"
 
 /* A label that ties at a grid point; ascending by point and label. */
 typedef struct mlim_tied
@@ -29,9 +29,9 @@ enum
 };
 
 /* winners: label of each grid point, with MLIM_TIED_FLAG where several tie. The flags stay; the labels change to
-   names the new winners of plateaus. */
-mlim_status mlim_plateau_find(
-  const mlim_samples* samples, mlim_context* context, uint16_t* winners, mlim_plateau* out);
+   the new winners of plateaus. Of indicators the peaks are empty. */
+mlim_status mlim_plateau_find(const mlim_samples* samples, const mlim_peaks* peaks,
+  mlim_context* context, uint16_t* winners, mlim_plateau* out);
 void mlim_plateau_free(mlim_plateau* plateau);
 
 /* The bonus of a label at a grid point with MLIM_TIED_FLAG. */

@@ -83,7 +83,7 @@ void mlim_samples_row(
 size_t mlim_samples_run(const mlim_samples* samples, size_t x)
 {
   const size_t left = (size_t)samples->grid->dims[0] - x;
-  const size_t room = samples->grid->indicators != NULL ? MLIM_BRICK - x % MLIM_BRICK : left;
+  const size_t room = MLIM_BRICK - x % MLIM_BRICK;
   return left < room ? left : room;
 }
 
@@ -92,16 +92,6 @@ size_t mlim_samples_list(
 {
   const int has_blank = samples->grid->is_outside != NULL;
   size_t found = 0;
-  if (samples->grid->indicators == NULL)
-  {
-    const int32_t labels =
-      samples->label_count + (samples->outside_label == samples->label_count && has_blank);
-    for (int32_t l = 0; l < labels; ++l)
-    {
-      out[found++] = (uint16_t)l;
-    }
-    return found;
-  }
   for (size_t n = 0; n < count; ++n)
   {
     found = mlim_indicators_list(samples->grid->indicators, points[n], out, found);
@@ -141,65 +131,11 @@ void mlim_array_name(const mlim_grid* grid, size_t array, char out[64])
   out[n] = '\0';
 }
 
-/* ---- the first reading ---- */
+/* ---- what is refused ---- */
 
-typedef struct slice_facts
+mlim_status mlim_samples_check(const mlim_samples* samples, mlim_context* context)
 {
-  double min, max, max_sum;
-  int has_bad;
-} slice_facts;
-
-typedef struct scan_job
-{
-  const mlim_grid* grid;
-  slice_facts* facts; /* one a z slice */
-} scan_job;
-
-static void scan_slice(const mlim_grid* grid, size_t z, slice_facts* facts)
-{
-  enum
-  {
-    CHUNK = 256
-  };
-  const size_t slice = (size_t)grid->dims[0] * (size_t)grid->dims[1];
-  *facts = (slice_facts){ .min = DBL_MAX, .max = -DBL_MAX, .max_sum = -DBL_MAX };
-  for (size_t i = 0; i < slice; i += CHUNK)
-  {
-    const size_t n = slice - i < CHUNK ? slice - i : CHUNK;
-    double sum[CHUNK] = { 0 };
-    double value[CHUNK];
-    for (size_t a = 0; a < grid->array_count; ++a)
-    {
-      mlim_scalars_read(&grid->arrays[a], z * slice + i, n, value);
-      int bad = 0;
-      for (size_t k = 0; k < n; ++k)
-      {
-        bad |= !(value[k] - value[k] == 0);
-        facts->min = value[k] < facts->min ? value[k] : facts->min;
-        facts->max = value[k] > facts->max ? value[k] : facts->max;
-        sum[k] += value[k];
-      }
-      facts->has_bad |= bad;
-    }
-    for (size_t k = 0; k < n; ++k)
-    {
-      facts->max_sum = sum[k] > facts->max_sum ? sum[k] : facts->max_sum;
-    }
-  }
-}
-
-static void scan_body(void* job, size_t begin, size_t end)
-{
-  const scan_job* scan = (const scan_job*)job;
-  for (size_t z = begin; z < end; ++z)
-  {
-    scan_slice(scan->grid, z, &scan->facts[z]);
-  }
-}
-
-/* Says how many values are not finite, in which array, and where the first is. */
-static mlim_status refuse_bad(const mlim_grid* grid, mlim_context* context)
-{
+  const mlim_grid* grid = samples->grid;
   const size_t nx = (size_t)grid->dims[0];
   const size_t ny = (size_t)grid->dims[1];
   const size_t points = nx * ny * (size_t)grid->dims[2];
@@ -318,48 +254,17 @@ static void name_labels(const mlim_grid* grid, mlim_samples* out)
                                                                    : out->label_count;
 }
 
-/* All slices' facts in one. */
-static mlim_status scan_arrays(const mlim_grid* grid, mlim_context* context, slice_facts* out)
+int32_t mlim_samples_rule_label(const mlim_samples* samples)
 {
-  const size_t slices = (size_t)grid->dims[2];
-  slice_facts* facts = mlim_allocate(slices, sizeof *facts);
-  if (facts == NULL)
-  {
-    return mlim_fail_memory(context, "reading the arrays");
-  }
-  mlim_parallel_for(context, slices, scan_body, &(scan_job){ .grid = grid, .facts = facts });
-  *out = facts[0];
-  for (size_t z = 1; z < slices; ++z)
-  {
-    out->min = facts[z].min < out->min ? facts[z].min : out->min;
-    out->max = facts[z].max > out->max ? facts[z].max : out->max;
-    out->max_sum = facts[z].max_sum > out->max_sum ? facts[z].max_sum : out->max_sum;
-    out->has_bad |= facts[z].has_bad;
-  }
-  mlim_release(facts);
-  return out->has_bad ? refuse_bad(grid, context) : MLIM_OK;
+  const int has_rule = samples->first_array == 1 || samples->grid->is_outside != NULL;
+  return has_rule ? samples->outside_label : -1;
 }
 
-mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim_samples* out)
+void mlim_samples_measure(mlim_samples* samples, const mlim_sample_range* range)
 {
-  *out = (mlim_samples){ 0 };
-  mlim_status status = check_grid(grid, context);
-  slice_facts facts = { 0 };
-  if (status == MLIM_OK && grid->indicators != NULL)
-  {
-    facts.min = grid->indicators->range[0];
-    facts.max = grid->indicators->range[1];
-  }
-  else if (status == MLIM_OK)
-  {
-    status = scan_arrays(grid, context, &facts);
-  }
-  if (status != MLIM_OK)
-  {
-    return status;
-  }
-  double low = facts.min;
-  double high = facts.max;
+  const mlim_grid* grid = samples->grid;
+  double low = range->min;
+  double high = range->max;
   double largest = 0;
   if (grid->background == MLIM_BACKGROUND_CONSTANT)
   {
@@ -368,14 +273,29 @@ mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim
   }
   else if (grid->background == MLIM_BACKGROUND_COMPLEMENT)
   {
-    out->total = facts.max_sum;
-    largest = fabs(facts.max_sum);
+    samples->total = range->max_sum;
+    largest = fabs(range->max_sum);
   }
-  name_labels(grid, out);
-  out->range = high - low;
+  samples->range = high - low;
   largest = fmax(largest, fmax(fabs(low), fabs(high)));
   int exponent = 0;
-  (void)frexp(isfinite(out->range) && largest > 0 ? largest : 1, &exponent);
-  out->scale = ldexp(1.0, -exponent - 3);
+  (void)frexp(isfinite(samples->range) && largest > 0 ? largest : 1, &exponent);
+  samples->scale = ldexp(1.0, -exponent - 3);
+}
+
+mlim_status mlim_samples_open(const mlim_grid* grid, mlim_context* context, mlim_samples* out)
+{
+  *out = (mlim_samples){ 0 };
+  const mlim_status status = check_grid(grid, context);
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  name_labels(grid, out);
+  if (grid->indicators != NULL)
+  {
+    const double* range = grid->indicators->range;
+    mlim_samples_measure(out, &(mlim_sample_range){ .min = range[0], .max = range[1] });
+  }
   return MLIM_OK;
 }

@@ -107,7 +107,7 @@ mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* wo
 {
   enum
   {
-    PIECES = 32 /* each well below the tenth of a second in which a host wants to cancel */
+    PIECES = 32
   };
   const size_t step = work->step > 0 ? work->step : work->count / PIECES + 1;
   mlim_status status = mlim_progress(context, work->stage, work->from);
