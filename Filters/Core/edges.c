@@ -5,7 +5,7 @@
 
 enum
 {
-  SLABS = 4,                 /* of vertices, whose uses are placed for themselves */
+  SLABS = 2,                 /* of vertices, whose uses are placed for themselves */
   VERTICES_A_PIECE = 1 << 16 /* between two looks at the host: some milliseconds */
 };
 

@@ -19,7 +19,7 @@ static int32_t bin_of(const mlim_nearest* nearest, double value, int axis)
 
 enum
 {
-  SLABS = 8 /* of bins, sorted for themselves: each looks at the layers of all triangles */
+  SLABS = 4 /* of bins, sorted for themselves: each looks at the layers of all triangles */
 };
 
 /* Low and high bins that a triangle may touch. */
