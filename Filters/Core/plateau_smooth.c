@@ -10,7 +10,7 @@ enum
   /* Gauss-Seidel sweeps, forward and back: a plateau of 20 cells across is smooth after them;
      beyond, the middle is still split by the side that is nearer. */
   SWEEPS = 64,
-  ROUND_STEPS = 1024 * 8192 /* between two looks at the host */
+  ROUND_STEPS = 1024 * 4096 /* between two looks at the host */
 };
 
 /* The six neighbours of a tied label: the same label tied there too, or a value that stands fast. */
