@@ -422,9 +422,28 @@ static void walk_cells(walk* w, double t, double last)
   }
 }
 
-static size_t cross_exact(const mlim_oracle* oracle, const double start[3], const double end[3],
-  size_t capacity, mlim_crossing* out)
+/* Takes away what is clear at the ends inside the box. Returns 0 when nothing is left. */
+static int cut(walk* w, const mlim_segment* segment, const int32_t faces[2], double t[2])
 {
+  const double inverse =
+    1 / mlim_max(fabs(w->direction[0]), mlim_max(fabs(w->direction[1]), fabs(w->direction[2])));
+  if (faces[0] < 0 && segment->clearances[0] > 0)
+  {
+    t[0] = segment->clearances[0] * inverse;
+    w->label = segment->labels[0];
+  }
+  if (faces[1] < 0)
+  {
+    t[1] = 1 - segment->clearances[1] * inverse;
+  }
+  return t[0] < t[1];
+}
+
+static size_t cross_exact(
+  const mlim_oracle* oracle, const mlim_segment* segment, size_t capacity, mlim_crossing* out)
+{
+  const double* start = segment->ends[0];
+  const double* end = segment->ends[1];
   walk w = { .field = oracle->field,
     .tolerance = oracle->tolerance,
     .label = -1,
@@ -457,6 +476,10 @@ static size_t cross_exact(const mlim_oracle* oracle, const double start[3], cons
     in[faces[0] >> 1] = faces[0] & 1 ? w.field->grid.size[faces[0] >> 1] : 0;
     w.label = outside;
     emit(&w, t[0], mlim_field_label(w.field, in), faces[0]);
+  }
+  if (!cut(&w, segment, faces, t))
+  {
+    return w.count;
   }
   walk_cells(&w, t[0], t[1]);
   if (faces[1] >= 0)
@@ -555,21 +578,23 @@ static size_t cross_by_bisection(const mlim_oracle* oracle, const double start[3
   return count;
 }
 
-size_t mlim_oracle_crossings_between(const mlim_oracle* oracle, const double start[3],
-  const double end[3], int differs, size_t capacity, mlim_crossing* out)
+size_t mlim_oracle_crossings_between(
+  const mlim_oracle* oracle, const mlim_segment* segment, size_t capacity, mlim_crossing* out)
 {
   const size_t count =
-    oracle->mode == MLIM_ORACLE_EXACT ? cross_exact(oracle, start, end, capacity, out) : 0;
+    oracle->mode == MLIM_ORACLE_EXACT ? cross_exact(oracle, segment, capacity, out) : 0;
   /* With an end within rounding of the interface, on the side that the walk did not see, bisection
      finds what the walk did not. */
-  const int is_done = oracle->mode == MLIM_ORACLE_EXACT && (count > 0 || !differs);
-  return is_done ? count : cross_by_bisection(oracle, start, end, capacity, out);
+  const int is_done =
+    oracle->mode == MLIM_ORACLE_EXACT && (count > 0 || segment->labels[0] == segment->labels[1]);
+  return is_done ? count
+                 : cross_by_bisection(oracle, segment->ends[0], segment->ends[1], capacity, out);
 }
 
 size_t mlim_oracle_crossings(const mlim_oracle* oracle, const double start[3], const double end[3],
   size_t capacity, mlim_crossing* out)
 {
-  const int differs =
-    mlim_field_label(oracle->field, start) != mlim_field_label(oracle->field, end);
-  return mlim_oracle_crossings_between(oracle, start, end, differs, capacity, out);
+  const mlim_segment segment = { .ends = { start, end },
+    .labels = { mlim_field_label(oracle->field, start), mlim_field_label(oracle->field, end) } };
+  return mlim_oracle_crossings_between(oracle, &segment, capacity, out);
 }

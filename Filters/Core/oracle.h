@@ -28,9 +28,17 @@ typedef struct mlim_oracle
 size_t mlim_oracle_crossings(const mlim_oracle* oracle, const double start[3], const double end[3],
   size_t capacity, mlim_crossing* out);
 
-/* The same for ends whose labels are known: whether they differ. */
-size_t mlim_oracle_crossings_between(const mlim_oracle* oracle, const double start[3],
-  const double end[3], int differs, size_t capacity, mlim_crossing* out);
+/* A segment of whose ends is known what mlim_field_look_at tells. */
+typedef struct mlim_segment
+{
+  const double* ends[2];
+  int32_t labels[2];
+  float clearances[2];
+} mlim_segment;
+
+/* The same, without looking at what is known. */
+size_t mlim_oracle_crossings_between(
+  const mlim_oracle* oracle, const mlim_segment* segment, size_t capacity, mlim_crossing* out);
 
 /* A label function, for bisection: tests give analytic ones. */
 typedef int32_t (*mlim_label_function)(const void* user, const double point[3]);

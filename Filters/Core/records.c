@@ -124,17 +124,21 @@ static mlim_sheet sheet_between(int32_t from, int32_t to, int32_t face)
 static void cross_facet(const mlim_complex* complex, finding* out)
 {
   const mlim_cell* cell = &complex->cells[out->cell];
-  const int32_t other = cell->neighbors[out->index];
-  const int differs = cell->label != complex->cells[other].label;
+  const int32_t n = cell->neighbors[out->index];
+  const mlim_cell* other = &complex->cells[n];
+  const int differs = cell->label != other->label;
   out->crosses = 0;
-  if (!differs && is_clear(complex, out->cell, other))
+  if (!differs && is_clear(complex, out->cell, n))
   {
     return;
   }
+  const mlim_segment dual = { .ends = { mlim_complex_center(complex, out->cell),
+                                mlim_complex_center(complex, n) },
+    .labels = { cell->label, other->label },
+    .clearances = { cell->clearance, other->clearance } };
   mlim_crossing crossing[MAX_CROSSINGS];
   const size_t count =
-    mlim_oracle_crossings_between(&complex->oracle, mlim_complex_center(complex, out->cell),
-      mlim_complex_center(complex, other), differs, MAX_CROSSINGS, crossing);
+    mlim_oracle_crossings_between(&complex->oracle, &dual, MAX_CROSSINGS, crossing);
   if (count == 0)
   {
     return;
