@@ -5,7 +5,7 @@
    them is MLIM_NO_CELL. The order of ids and cells depends on the order of insertions alone.
 
    Where a point lies on the power sphere of a cell, the choice is made as if each vertex were lighter
-   than it is by an infinitesimal, of a higher order than those of all before it. So what ties with a new
+   than it is by an infinitesimal, infinitely larger than those of all before it. So what ties with a new
    point counts as not in conflict. The triangulation is then that of the lighter points, which are in
    general position: the zone of a point is always star-shaped, and no flat cell is made, since a
    facet in whose plane a point lies has both its cells in conflict with it or neither. */
