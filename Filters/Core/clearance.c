@@ -94,66 +94,12 @@ static mlim_status chamfer(
   return status;
 }
 
-/* The least distance of the cells of a brick, and that of each of them into its word if it has some. */
-static int store_brick(
-  mlim_field* field, const uint8_t* distance, const int32_t brick[3], uint32_t* words)
-{
-  const int32_t* cells = field->grid.cells;
-  int32_t end[3];
-  int least = MAX_CLEARANCE;
-  for (int k = 0; k < 3; ++k)
-  {
-    end[k] = BRICK * (brick[k] + 1) < cells[k] ? BRICK * (brick[k] + 1) : cells[k];
-  }
-  for (int32_t z = BRICK * brick[2]; z < end[2]; ++z)
-  {
-    for (int32_t y = BRICK * brick[1]; y < end[1]; ++y)
-    {
-      const uint8_t* row = distance + (size_t)cells[0] * ((size_t)y + (size_t)cells[1] * (size_t)z);
-      for (int32_t x = BRICK * brick[0]; x < end[0]; ++x)
-      {
-        least = row[x] < least ? row[x] : least;
-        uint32_t* word = words == NULL ? NULL : words + ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
-        if (word != NULL && !(*word & (uint32_t)MIXED))
-        {
-          *word |= (uint32_t)row[x] << 16;
-        }
-      }
-    }
-  }
-  return least;
-}
-
-static void store_all(mlim_field* field, const uint8_t* distance)
-{
-  int32_t brick[3];
-  uint32_t* coarse = field->coarse;
-  for (brick[2] = 0; brick[2] < field->bricks[2]; ++brick[2])
-  {
-    for (brick[1] = 0; brick[1] < field->bricks[1]; ++brick[1])
-    {
-      for (brick[0] = 0; brick[0] < field->bricks[0]; ++brick[0], ++coarse)
-      {
-        const int is_mixed = (*coarse & (uint32_t)MIXED) != 0;
-        uint32_t* words =
-          is_mixed ? field->layers[brick[2]].words + (*coarse & DETAIL) * BRICK_CELLS : NULL;
-        const int least = store_brick(field, distance, brick, words);
-        /* Neighbouring uniform cells have one label: their common corners are grid points. */
-        *coarse |= is_mixed ? 0 : (uint32_t)least << 16;
-      }
-    }
-  }
-}
-
-mlim_status mlim_clearance_measure(mlim_field* field, uint8_t* distance, mlim_context* context)
+mlim_status mlim_clearance_measure(mlim_field* field, mlim_context* context)
 {
   uint8_t* least = mlim_allocate((size_t)field->grid.cells[0] + 2, 1);
-  const mlim_status status = least != NULL ? chamfer(distance, field->grid.cells, least, context)
-                                           : mlim_fail_memory(context, "the field's index");
-  if (status == MLIM_OK)
-  {
-    store_all(field, distance);
-  }
+  const mlim_status status = least != NULL
+                               ? chamfer(field->clearances, field->grid.cells, least, context)
+                               : mlim_fail_memory(context, "the field's index");
   mlim_release(least);
   return status;
 }

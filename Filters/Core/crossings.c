@@ -20,7 +20,7 @@ static int cross_pair(const mlim_field* field, const int32_t low[3], int axis, m
     cell[k] = low[k] - is_last;
     corner |= is_last << k;
   }
-  const uint32_t word = field_cell_word(field, cell, NULL);
+  const uint32_t word = field_cell_word(field, cell);
   if (!(word & (uint32_t)MIXED) || (word & (uint32_t)MANY))
   {
     return 0;

@@ -19,6 +19,7 @@ void mlim_field_free(mlim_field* field)
   }
   mlim_release(field->layers);
   mlim_release(field->coarse);
+  mlim_release(field->clearances);
   mlim_release(field->winners);
   mlim_release(field->ids);
   mlim_release(field);
@@ -64,7 +65,7 @@ int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3])
 mlim_candidates mlim_field_cell(
   const mlim_field* field, const int32_t cell[3], const mlim_cell_buffer* buffer)
 {
-  const uint32_t word = field_cell_word(field, cell, NULL);
+  const uint32_t word = field_cell_word(field, cell);
   mlim_candidates out = { .count = 1, .labels = buffer->labels, .values = NULL };
   if (!(word & (uint32_t)MIXED))
   {
@@ -202,7 +203,7 @@ int mlim_field_normal(
   {
     return 0;
   }
-  const uint32_t word = field_cell_word(field, cell, NULL);
+  const uint32_t word = field_cell_word(field, cell);
   if (!(word & (uint32_t)MIXED) ||
       !difference_of(field_pool_entry(field, cell, word), word, first, second, v))
   {
@@ -237,7 +238,7 @@ int32_t mlim_field_label(const mlim_field* field, const double point[3])
   {
     return field->outside_label;
   }
-  const uint32_t word = field_cell_word(field, cell, NULL);
+  const uint32_t word = field_cell_word(field, cell);
   return word & (uint32_t)MIXED ? field_mixed_label(field_pool_entry(field, cell, word), word, at)
                                 : (int32_t)word;
 }
@@ -257,7 +258,8 @@ static void find_place(const mlim_field* field, const double point[3], place* ou
   out->is_inside = find_cell(field, point, out->cell, out->at);
   if (out->is_inside)
   {
-    out->word = field_cell_word(field, out->cell, &out->reach);
+    out->word = field_cell_word(field, out->cell);
+    out->reach = field_clearance(field, out->cell);
   }
 }
 

@@ -13,7 +13,6 @@ typedef struct build_job
 {
   mlim_field_source source;
   mlim_field* field;
-  uint8_t* distance; /* a cell: Chebyshev distance to the nearest mixed one or to the outside */
 } build_job;
 
 /* ---- bricks ---- */
@@ -91,7 +90,8 @@ static int tell_plain(const build_job* job, brick_work* work)
   {
     const size_t y = (size_t)(first[1] + row % BRICK);
     const size_t z = (size_t)(first[2] + row / BRICK);
-    memset(job->distance + (size_t)first[0] + (size_t)cells[0] * (y + (size_t)cells[1] * z),
+    memset(
+      job->field->clearances + (size_t)first[0] + (size_t)cells[0] * (y + (size_t)cells[1] * z),
       MAX_CLEARANCE, BRICK);
   }
   return 1;
@@ -125,7 +125,7 @@ static void tell_mixed(const build_job* job, brick_work* work)
     const size_t at =
       (size_t)cell[0] + (size_t)field->grid.cells[0] *
                           ((size_t)cell[1] + (size_t)field->grid.cells[1] * (size_t)cell[2]);
-    job->distance[at] = differs ? 0 : MAX_CLEARANCE;
+    job->field->clearances[at] = differs ? 0 : MAX_CLEARANCE;
   }
 }
 
@@ -344,7 +344,7 @@ static mlim_status build_index(build_job* job, mlim_context* context)
     field->winners[p] = (uint16_t)(field->winners[p] & ~MLIM_TIED_FLAG);
   }
   status = mlim_progress(context, MLIM_STAGE_FIELD, 0.9);
-  return status != MLIM_OK ? status : mlim_clearance_measure(field, job->distance, context);
+  return status != MLIM_OK ? status : mlim_clearance_measure(field, context);
 }
 
 mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim_field** out)
@@ -390,9 +390,9 @@ mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim
     goto done;
   }
   job = (build_job){ .source = { &samples, field, &plateau, &peaks }, .field = field };
-  job.distance = mlim_allocate(
+  field->clearances = mlim_allocate(
     (size_t)field->grid.cells[0] * (size_t)field->grid.cells[1] * (size_t)field->grid.cells[2], 1);
-  if (job.distance == NULL)
+  if (field->clearances == NULL)
   {
     status = mlim_fail_memory(context, "the field's clearances");
     goto done;
@@ -405,7 +405,6 @@ mlim_status mlim_field_create(const mlim_grid* grid, mlim_context* context, mlim
 done:
   mlim_plateau_free(&plateau);
   mlim_peaks_free(&peaks);
-  mlim_release(job.distance);
   if (status != MLIM_OK)
   {
     mlim_field_free(field);

@@ -15,7 +15,7 @@ enum
 {
   BRICK = 4,               /* cells along a brick's side */
   BRICK_CELLS = 64,        /* BRICK^3 */
-  MAX_CLEARANCE = 255,     /* in cells; fits the bits above the label */
+  MAX_CLEARANCE = 255,     /* in cells */
   MIXED = (int)0x80000000, /* word: the low 30 bits lead to the detail */
   MANY = 0x40000000,       /* mixed cell word: more than two candidates */
   DETAIL = 0x3fffffff,     /* the low 30 bits */
@@ -44,15 +44,25 @@ struct mlim_field
   int32_t bricks[3];
   uint32_t*
     coarse; /* a brick: label | least clearance of its cells << 16, or MIXED | brick in its layer */
+  uint8_t*
+    clearances; /* a cell: in cells, how far it is to a mixed one along the farthest axis; 0 if it is */
   field_layer* layers;
   size_t layer_count;
   size_t max_candidates;
 };
 
-/* Word of a cell; *clearance (may be NULL) receives a number of cells c such that all cells within
-   Chebyshev distance < c are uniform with the same label or outside the box. 0 when mixed. */
-static inline uint32_t field_cell_word(
-  const mlim_field* field, const int32_t cell[3], int* clearance)
+/* All cells within so many in each direction, less one, are uniform with the label of this one or outside the
+   box. 0 when it is mixed. */
+static inline int field_clearance(const mlim_field* field, const int32_t cell[3])
+{
+  const int32_t* cells = field->grid.cells;
+  return field
+    ->clearances[(size_t)cell[0] +
+                 (size_t)cells[0] * ((size_t)cell[1] + (size_t)cells[1] * (size_t)cell[2])];
+}
+
+/* Word of a cell: its label when it is uniform. */
+static inline uint32_t field_cell_word(const mlim_field* field, const int32_t cell[3])
 {
   const int32_t bx = cell[0] >> 2;
   const int32_t by = cell[1] >> 2;
@@ -62,31 +72,11 @@ static inline uint32_t field_cell_word(
                   (size_t)field->bricks[0] * ((size_t)by + (size_t)field->bricks[1] * (size_t)bz)];
   if (!(word & (uint32_t)MIXED))
   {
-    if (clearance != NULL)
-    {
-      /* The uniform box reaches this many cells beyond the brick on each side. */
-      const int32_t reach = (int32_t)(word >> 16) - 1;
-      int32_t least = INT32_MAX;
-      for (int k = 0; k < 3; ++k)
-      {
-        const int32_t in = cell[k] & (BRICK - 1);
-        const int32_t low = in + 1 + reach;
-        const int32_t high = BRICK - in + reach;
-        least = low < least ? low : least;
-        least = high < least ? high : least;
-      }
-      *clearance = least;
-    }
-    return word & 0xffffu;
+    return word;
   }
   const size_t slot =
     (size_t)(cell[0] & 3) | (size_t)(cell[1] & 3) << 2 | (size_t)(cell[2] & 3) << 4;
-  const uint32_t inner = field->layers[bz].words[(word & DETAIL) * BRICK_CELLS + slot];
-  if (clearance != NULL)
-  {
-    *clearance = inner & (uint32_t)MIXED ? 0 : (int)(inner >> 16);
-  }
-  return inner & (uint32_t)MIXED ? inner : inner & 0xffffu;
+  return field->layers[bz].words[(word & DETAIL) * BRICK_CELLS + slot];
 }
 
 /* The pool entry of a mixed cell. */

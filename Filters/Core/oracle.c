@@ -389,21 +389,27 @@ static void walk_cells(walk* w, double t, double last)
     mlim_max(fabs(w->direction[0]), mlim_max(fabs(w->direction[1]), fabs(w->direction[2])));
   const double nudge = 1e-9 / longest;
   const int max_steps = 2 * (cells[0] + cells[1] + cells[2]) + 64;
+  int is_uniform = 0;
   int32_t cell[3];
   cell_after(w, t, nudge, cell);
   for (int step = 0; step < max_steps && t < last; ++step)
   {
-    int clearance;
     int axis;
-    const uint32_t word = field_cell_word(w->field, cell, &clearance);
-    if (!(word & (uint32_t)MIXED))
+    const int clearance = field_clearance(w->field, cell);
+    if (clearance > 0)
     {
-      emit(w, t, (int32_t)word, -1);
-      const double next = exit_of(w, cell, clearance > 0 ? clearance - 1 : 0, &axis);
+      if (!is_uniform)
+      {
+        emit(w, t, (int32_t)field_cell_word(w->field, cell), -1);
+      }
+      is_uniform = 1; /* and what comes next has the same label, or is mixed */
+      const double next = exit_of(w, cell, clearance - 1, &axis);
       t = next > t ? next : t + nudge;
       cell_after(w, t, nudge, cell);
       continue;
     }
+    is_uniform = 0;
+    const uint32_t word = field_cell_word(w->field, cell);
     double next = exit_of(w, cell, 0, &axis);
     next = next < t ? t : next;
     const int is_last = next >= last;

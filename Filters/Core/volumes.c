@@ -29,8 +29,9 @@ static void add_mixed_cell(
 
 /* Cells from a uniform one on, along x, that are known to be like it: as many as stay within reach of
    its clearance. */
-static int32_t count_alike(const mlim_field* field, const int32_t cell[3], int clearance)
+static int32_t count_alike(const mlim_field* field, const int32_t cell[3])
 {
+  const int32_t clearance = field_clearance(field, cell);
   const int32_t left = field->grid.cells[0] - cell[0];
   return clearance < left ? clearance : left;
 }
@@ -48,15 +49,14 @@ static void volume_body(void* data, size_t begin, size_t end)
       int32_t count = 1;
       for (cell[0] = 0; cell[0] < grid->cells[0]; cell[0] += count)
       {
-        int clearance;
-        const uint32_t word = field_cell_word(job->field, cell, &clearance);
+        const uint32_t word = field_cell_word(job->field, cell);
         count = 1;
         if (word & (uint32_t)MIXED)
         {
           add_mixed_cell(job->field, cell, word, eighths);
           continue;
         }
-        count = clearance > 1 ? count_alike(job->field, cell, clearance) : 1;
+        count = count_alike(job->field, cell);
         eighths[word] += 8 * (size_t)count;
       }
     }
