@@ -316,9 +316,7 @@ static int is_contact_edge(const mlim_complex* complex, int32_t a, int32_t b)
          (is_contact(complex, a) || is_contact(complex, b));
 }
 
-/* Whether the edges are one cycle that passes no vertex twice: nearly every link is, and that is seen
-   without sorting. 0 also for one with many edges. */
-static int is_ring(const int32_t* edges, size_t count)
+int mlim_disk_is_ring(const int32_t* edges, size_t count)
 {
   enum
   {
@@ -408,7 +406,7 @@ mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* 
   {
     return mlim_fail_memory(context, "a vertex's star");
   }
-  if (complex->vertices[vertex].ball < 0 && is_ring(star->edges, star->edge_count / 2))
+  if (complex->vertices[vertex].ball < 0 && mlim_disk_is_ring(star->edges, star->edge_count / 2))
   {
     *out = MLIM_DISK_HOLDS;
     return MLIM_OK;

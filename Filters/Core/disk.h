@@ -43,6 +43,10 @@ typedef enum mlim_disk
   MLIM_DISK_FAILS
 } mlim_disk;
 
+/* Whether the edges, 2 vertices each, are one cycle that passes no vertex twice: nearly every link is, and
+   that is seen without sorting. 0 also for one with many edges. */
+int mlim_disk_is_ring(const int32_t* edges, size_t count);
+
 /* Checks one vertex; star->facets receives its records. Changes nothing but the star. */
 mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* links,
   int32_t vertex, mlim_star* star, mlim_context* context, mlim_disk* out);

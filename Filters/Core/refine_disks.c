@@ -1,6 +1,7 @@
 #include "refine_disks.h"
 
 #include "memory.h"
+#include "refine_rings.h"
 #include "status.h"
 #include "vector.h"
 
@@ -111,7 +112,9 @@ static mlim_status check(disks* d, mlim_context* context)
 
 mlim_status mlim_disks_check(mlim_refinement* refinement, mlim_context* context)
 {
-  return check(&(disks){ .refinement = refinement, .is_queueing = 1 }, context);
+  const mlim_status status = mlim_rings_settle(refinement, context);
+  return status == MLIM_OK ? check(&(disks){ .refinement = refinement, .is_queueing = 1 }, context)
+                           : status;
 }
 
 mlim_status mlim_disks_settle(mlim_refinement* refinement, double done, mlim_context* context)
