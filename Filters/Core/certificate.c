@@ -36,9 +36,7 @@ static int32_t component_at(
     const int32_t p[3] = { low[0] + (c & 1), low[1] + (c >> 1 & 1), low[2] + (c >> 2 & 1) };
     if (mlim_field_point_label(field, p) == complex->cells[cell].label)
     {
-      return components
-        ->of_point[(size_t)p[0] +
-                   (size_t)grid->dims[0] * ((size_t)p[1] + (size_t)grid->dims[1] * (size_t)p[2])];
+      return mlim_components_at(components, field, p);
     }
   }
   return -1;

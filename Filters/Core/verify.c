@@ -67,11 +67,9 @@ typedef struct far_visit
 
 static int is_small(const far_job* job, const int32_t point[3])
 {
-  const int32_t* dims = mlim_field_grid_of(job->oracle.field)->dims;
   const mlim_components* components = job->verification->components;
-  const size_t at =
-    (size_t)point[0] + (size_t)dims[0] * ((size_t)point[1] + (size_t)dims[1] * (size_t)point[2]);
-  return components->components[components->of_point[at]].voxel_count < job->min_voxels;
+  const int32_t at = mlim_components_at(components, job->oracle.field, point);
+  return components->components[at].voxel_count < job->min_voxels;
 }
 
 static int is_far(const far_job* job, const mlim_crossing* crossing)
