@@ -35,7 +35,7 @@ struct mlim_delaunay
   size_t cell_count, cell_capacity, sphere_capacity;
   int32_t* free_cells; /* ids of dead cells, last in first out */
   size_t free_count, free_capacity;
-  weighted_point* vertices;
+  mlim_vertex* vertices;
   int32_t* places; /* a vertex: its place in `around`, if it is there */
   size_t vertex_count, vertex_capacity, place_capacity;
   int32_t last; /* a cell of the last insertion: what is asked for next is often near */
@@ -207,13 +207,13 @@ static mlim_status make_far_vertices(mlim_delaunay* d, const double size[3], mli
     }
     const double off = 0.0078125 * k;
     const double shift[3] = { off, -0.75 * off, off * off * 3 };
-    weighted_point* v = &d->vertices[d->vertex_count];
+    mlim_vertex* v = &d->vertices[d->vertex_count];
+    *v = (mlim_vertex){ .cell = 0 };
     for (int a = 0; a < 3; ++a)
     {
       const double sign = k >> a & 1 ? 1 : -1;
       v->at[a] = 0.5 * size[a] + largest * (3 * sign + shift[a]);
     }
-    v->at[3] = 0;
     d->places[d->vertex_count++] = 0;
   }
   return MLIM_OK;
@@ -257,9 +257,9 @@ void mlim_delaunay_free(mlim_delaunay* delaunay)
   mlim_release(delaunay);
 }
 
-void mlim_delaunay_far_vertex(const mlim_delaunay* delaunay, int32_t vertex, double out[3])
+mlim_vertex* mlim_delaunay_vertices(mlim_delaunay* delaunay)
 {
-  memcpy(out, delaunay->vertices[vertex].at, 3 * sizeof *out);
+  return delaunay->vertices;
 }
 
 mlim_delaunay_cells mlim_delaunay_all(mlim_delaunay* delaunay)
@@ -648,7 +648,8 @@ mlim_status mlim_delaunay_fill(
   }
   d->has_zone = 0;
   const int32_t vertex = (int32_t)d->vertex_count++;
-  d->vertices[vertex] = d->point;
+  d->vertices[vertex] = (mlim_vertex){ .cell = 0 };
+  memcpy(d->vertices[vertex].at, d->point.at, sizeof d->point.at);
   d->places[vertex] = 0;
   take_ids(d);
   make_cells(d, vertex);
