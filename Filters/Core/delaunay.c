@@ -90,7 +90,7 @@ static mlim_status make_sphere(mlim_delaunay* d, int32_t cell, mlim_context* con
     weights[k] = corners[k][3];
   }
   mlim_power_sphere* sphere = &d->spheres[cell];
-  return mlim_power_sphere_make((const double(*)[3])points, weights, sphere)
+  return mlim_power_sphere_make((const double(*)[3])points, weights, sphere, &d->cells[cell].bound)
            ? MLIM_OK
            : mlim_predicates_center(corners, context, sphere->center);
 }
@@ -320,7 +320,8 @@ static mlim_status locate(mlim_delaunay* d, int32_t start, mlim_context* context
 static inline mlim_status is_in_conflict(
   const mlim_delaunay* d, int32_t cell, mlim_context* context, int* out)
 {
-  const int side = mlim_power_sphere_side(&d->spheres[cell], d->point.at, d->point.at[3]);
+  const int side =
+    mlim_power_sphere_side(&d->spheres[cell], &d->cells[cell].bound, d->point.at, d->point.at[3]);
   *out = side < 0;
   if (side != 0)
   {

@@ -18,7 +18,8 @@
 enum
 {
   MLIM_NO_CELL = -1,
-  MLIM_FAR_VERTICES = 8
+  MLIM_FAR_VERTICES = 8,
+  MLIM_CLEARANCE_PARTS = 256 /* of a cell of the grid */
 };
 
 typedef struct mlim_delaunay mlim_delaunay;
@@ -57,13 +58,14 @@ typedef struct mlim_vertex
    is in one line of the cache, in whose size the time goes. */
 typedef struct mlim_cell
 {
-  int32_t vertices[4];  /* vertices[0] < 0: a dead cell, with nothing else in it */
-  int32_t neighbors[4]; /* neighbour k is opposite to vertex k */
-  uint32_t seen;        /* the triangulation's own */
+  int32_t vertices[4];    /* vertices[0] < 0: a dead cell, with nothing else in it */
+  int32_t neighbors[4];   /* neighbour k is opposite to vertex k */
+  uint32_t seen;          /* the triangulation's own */
+  mlim_power_bound bound; /* of the sphere; also the triangulation's own */
   /* The client's. All 0 when the cell is made. */
+  uint16_t clearance; /* mlim_field_look at the centre, in parts of MLIM_CLEARANCE_PARTS, or less */
   uint32_t mark;
   int32_t label;
-  float clearance;   /* mlim_field_look at the centre */
   int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
 } mlim_cell;
 

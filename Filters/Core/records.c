@@ -46,6 +46,13 @@ static size_t least(size_t a, size_t b)
 
 /* ---- labels ---- */
 
+/* Rounded down: less is only looked at more closely. */
+static uint16_t narrow(float clearance)
+{
+  const float parts = clearance * MLIM_CLEARANCE_PARTS;
+  return (uint16_t)(parts < UINT16_MAX ? parts : UINT16_MAX);
+}
+
 static void label_piece(const update* u, size_t piece)
 {
   mlim_complex* complex = u->complex;
@@ -61,7 +68,7 @@ static void label_piece(const update* u, size_t piece)
   {
     mlim_cell* cell = &complex->cells[complex->made[k]];
     cell->label = looks[k - begin].label;
-    cell->clearance = looks[k - begin].clearance;
+    cell->clearance = narrow(looks[k - begin].clearance);
   }
 }
 
@@ -111,7 +118,8 @@ static int is_clear(const mlim_complex* complex, int32_t a, int32_t b)
   {
     longest = mlim_max(longest, fabs(start[k] - end[k]) * inverse[k]);
   }
-  return longest <= (double)complex->cells[a].clearance + (double)complex->cells[b].clearance;
+  return longest * MLIM_CLEARANCE_PARTS <=
+         complex->cells[a].clearance + complex->cells[b].clearance;
 }
 
 static mlim_sheet sheet_between(int32_t from, int32_t to, int32_t face)
