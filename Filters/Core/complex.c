@@ -276,7 +276,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
       "The mesh has %zu vertices, the limit; what is still bad is counted.",
       complex->vertex_limit - MLIM_FAR_VERTICES);
   }
-  if (mlim_reserve(&complex->dirty, &complex->dirty_capacity, complex->vertex_count + 1,
+  if (mlim_reserve_apart(&complex->dirty, &complex->dirty_capacity, complex->vertex_count + 1,
         sizeof *complex->dirty))
   {
     return mlim_fail_memory(context, "the triangulation");
@@ -297,7 +297,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
     return status;
   }
   mlim_complex_borrow_cells(complex);
-  if (mlim_reserve(&complex->made, &complex->made_capacity, complex->made_count + made.count,
+  if (mlim_reserve_apart(&complex->made, &complex->made_capacity, complex->made_count + made.count,
         sizeof *complex->made))
   {
     return mlim_fail_memory(context, "the triangulation");
@@ -313,7 +313,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
 mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context)
 {
   mlim_complex_borrow_cells(complex);
-  if (mlim_reserve(
+  if (mlim_reserve_apart(
         &complex->made, &complex->made_capacity, complex->cell_count, sizeof *complex->made))
   {
     return mlim_fail_memory(context, "the triangulation");

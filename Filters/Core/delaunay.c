@@ -10,9 +10,7 @@ enum
 {
   FEW_PLACES = 64, /* borders with so many vertices have a table of edges; larger ones are hashed */
   NO_SLOT = -1,
-  /* Room for cells at the start: blocks so large (32 MB) cost no memory until they are used, and grow without
-     a copy that leaves its old place as a hole. */
-  FIRST_CELLS = 1 << 19
+  FIRST_CELLS = 1 << 8 /* more than there are fours of far vertices */
 };
 
 /* A facet between a dead cell and one that lives, or the outside. Its normal points out of the dead one. */
@@ -100,16 +98,16 @@ static int reserve_cells(mlim_delaunay* d, size_t count)
 {
   const size_t needed = d->cell_count + count;
   return needed > INT32_MAX ||
-         mlim_reserve(&d->cells, &d->cell_capacity, needed, sizeof *d->cells) ||
-         mlim_reserve(&d->spheres, &d->sphere_capacity, needed, sizeof *d->spheres);
+         mlim_reserve_apart(&d->cells, &d->cell_capacity, needed, sizeof *d->cells) ||
+         mlim_reserve_apart(&d->spheres, &d->sphere_capacity, needed, sizeof *d->spheres);
 }
 
 static int reserve_vertex(mlim_delaunay* d)
 {
   const size_t needed = d->vertex_count + 1;
   return needed > INT32_MAX ||
-         mlim_reserve(&d->vertices, &d->vertex_capacity, needed, sizeof *d->vertices) ||
-         mlim_reserve(&d->places, &d->place_capacity, needed, sizeof *d->places);
+         mlim_reserve_apart(&d->vertices, &d->vertex_capacity, needed, sizeof *d->vertices) ||
+         mlim_reserve_apart(&d->places, &d->place_capacity, needed, sizeof *d->places);
 }
 
 /* ---- start ---- */
@@ -533,7 +531,7 @@ static int reserve_fill(mlim_delaunay* d)
   const size_t count = d->border_count;
   return 3 * count > INT32_MAX || reserve_cells(d, count > free_count ? count - free_count : 0) ||
          reserve_vertex(d) ||
-         mlim_reserve(&d->free_cells, &d->free_capacity, free_count, sizeof *d->free_cells) ||
+         mlim_reserve_apart(&d->free_cells, &d->free_capacity, free_count, sizeof *d->free_cells) ||
          mlim_reserve(&d->made, &d->made_capacity, count, sizeof *d->made) ||
          mlim_reserve(&d->slots, &d->slot_capacity, count_slots(d), sizeof *d->slots);
 }

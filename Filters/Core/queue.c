@@ -116,7 +116,7 @@ int mlim_queue_push_at(
   mlim_queue* queue, int bin, const double point[3], int32_t record, uint32_t generation)
 {
   mlim_queue_bin* b = &queue->bins[bin];
-  if (mlim_reserve(&b->entries, &b->capacity, b->count + 1, sizeof *b->entries))
+  if (mlim_reserve_apart(&b->entries, &b->capacity, b->count + 1, sizeof *b->entries))
   {
     return 1;
   }

@@ -234,9 +234,9 @@ static int32_t new_record(mlim_complex* complex)
     return complex->free_facets[--complex->free_count];
   }
   if (complex->facet_count >= INT32_MAX - 1 ||
-      mlim_reserve(&complex->facets, &complex->facet_capacity, complex->facet_count + 1,
+      mlim_reserve_apart(&complex->facets, &complex->facet_capacity, complex->facet_count + 1,
         sizeof *complex->facets) ||
-      mlim_reserve(&complex->free_facets, &complex->free_capacity, complex->facet_capacity,
+      mlim_reserve_apart(&complex->free_facets, &complex->free_capacity, complex->facet_capacity,
         sizeof *complex->free_facets))
   {
     return 0;
@@ -259,7 +259,7 @@ static int apply(mlim_complex* complex, const finding* found)
   if (found->crosses)
   {
     record = new_record(complex);
-    if (record == 0 || mlim_reserve(&complex->fresh, &complex->fresh_capacity,
+    if (record == 0 || mlim_reserve_apart(&complex->fresh, &complex->fresh_capacity,
                          complex->fresh_count + 1, sizeof *complex->fresh))
     {
       return 1;
