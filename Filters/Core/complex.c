@@ -47,12 +47,23 @@ void mlim_complex_free(mlim_complex* complex)
 {
   mlim_delaunay_free(complex->delaunay);
   mlim_release(complex->distance_shares);
+  mlim_complex_free_records(complex);
+  *complex = (mlim_complex){ 0 };
+}
+
+void mlim_complex_free_records(mlim_complex* complex)
+{
   mlim_release(complex->facets);
   mlim_release(complex->free_facets);
   mlim_release(complex->fresh);
   mlim_release(complex->made);
   mlim_release(complex->dirty);
-  *complex = (mlim_complex){ 0 };
+  complex->facets = NULL;
+  complex->free_facets = complex->fresh = complex->made = complex->dirty = NULL;
+  complex->facet_count = complex->free_count = complex->fresh_count = 0;
+  complex->facet_capacity = complex->free_capacity = complex->fresh_capacity = 0;
+  complex->made_count = complex->dirty_count = 0;
+  complex->made_capacity = complex->dirty_capacity = 0;
 }
 
 size_t mlim_complex_count_broken(const mlim_complex* complex)

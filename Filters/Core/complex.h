@@ -71,6 +71,9 @@ mlim_status mlim_complex_create(
   const mlim_oracle* oracle, const mlim_balls* balls, mlim_context* context, mlim_complex* out);
 void mlim_complex_free(mlim_complex* complex);
 
+/* The records are needed no more: the cells and vertices stay. */
+void mlim_complex_free_records(mlim_complex* complex);
+
 /* Looks where a vertex would go; *is_found: it can be inserted. start and kind as in
    mlim_delaunay_find. */
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
