@@ -181,8 +181,9 @@ static mlim_status measure_distances(
   const mlim_oracle* oracle, const mlim_options* options, mlim_context* context, mlim_mesh* mesh)
 {
   const mlim_field_grid* grid = mlim_field_grid_of(oracle->field);
+  const mlim_triangles triangles = mlim_triangles_of(mesh);
   mlim_nearest nearest;
-  mlim_status status = mlim_nearest_create(mesh, grid->size, grid->unit, context, &nearest);
+  mlim_status status = mlim_nearest_create(&triangles, grid->size, grid->unit, context, &nearest);
   if (status != MLIM_OK)
   {
     return status;
