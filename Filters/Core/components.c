@@ -55,7 +55,7 @@ static int add_row(run_list* list, const uint16_t* labels, int32_t count)
     {
       ++end;
     }
-    if (mlim_reserve(&list->runs, &list->capacity, list->count + 1, sizeof *list->runs))
+    if (mlim_reserve_apart(&list->runs, &list->capacity, list->count + 1, sizeof *list->runs))
     {
       return 1;
     }
