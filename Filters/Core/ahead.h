@@ -17,7 +17,7 @@ static inline void mlim_ahead_of_vertex(const mlim_complex* complex, int32_t ver
 {
   const mlim_vertex* v = &complex->vertices[vertex];
   mlim_prefetch(v);
-  mlim_prefetch(&v->is_broken);
+  mlim_prefetch(&v->sheet);
 }
 
 /* The vertices of a facet, and the cell beyond it. */

@@ -46,7 +46,7 @@ static mlim_status insert(filler* f, const double point[3], double distance, int
     return status;
   }
   mlim_delaunay_zone made;
-  status = mlim_zone_fill(complex, point, demand.label, f->context, &made);
+  status = mlim_zone_fill(complex, demand.label, f->context, &made);
   if (status == MLIM_OK)
   {
     *is_there = 1;

@@ -37,6 +37,7 @@ typedef struct build
   size_t insertion_count; /* of the passes before this one */
   size_t relabeled_cell_count;
   size_t stray_count;
+  int has_volume;         /* wanted: the complex is needed to the end */
   double done;            /* of the certificate's stage */
   mlim_boundary boundary; /* of the finished complex */
   mlim_edges edges;       /* of the mesh */
@@ -249,6 +250,45 @@ static mlim_status read(build* b, mlim_mesh* out)
                                       b->context, b->mesh_vertices, out);
 }
 
+static mlim_status count_unresolved(build* b, mlim_mesh* out)
+{
+  mlim_report* report = &out->report;
+  const mlim_status status =
+    mlim_unresolved_count(&b->refinement.complex, b->options, b->done, b->context, report);
+  report->insertion_count = b->insertion_count + b->refinement.insertion_count;
+  report->relabeled_cell_count = b->relabeled_cell_count;
+  report->hidden_ball_count = b->hidden_ball_count;
+  report->unresolved_patch_count = b->stray_count;
+  return status;
+}
+
+static mlim_status count_disks(build* b, mlim_mesh* out)
+{
+  const mlim_status status = mlim_disks_settle(&b->refinement, MLIM_CERTIFY_FROM, b->context);
+  return status == MLIM_OK ? mlim_mesh_list_failures(&b->refinement.complex, b->context, out)
+                           : status;
+}
+
+static mlim_status count_components(build* b, mlim_mesh* out)
+{
+  return mlim_certificate_count_components(
+    &b->refinement.complex, &b->components, b->options->min_component_voxels, b->context, out);
+}
+
+/* Room for what the mesh alone is measured with. */
+static mlim_status release_complex(build* b, mlim_mesh* out)
+{
+  (void)out;
+  mlim_boundary_free(&b->boundary);
+  mlim_components_free(&b->components);
+  mlim_complex_free_records(&b->refinement.complex);
+  if (!b->has_volume)
+  {
+    mlim_refine_free(&b->refinement);
+  }
+  return MLIM_OK;
+}
+
 static mlim_status find_edges(build* b, mlim_mesh* out)
 {
   return mlim_edges_create(out, b->done, b->context, &b->edges);
@@ -266,8 +306,13 @@ static mlim_status settle_edges(build* b, mlim_mesh* out)
 
 static mlim_status measure_quality(build* b, mlim_mesh* out)
 {
-  return mlim_quality_measure(
-    out, &b->edges, b->options->facet_radius_edge_ratio, b->done, b->context);
+  const mlim_status status =
+    mlim_quality_measure(out, &b->edges, b->options->facet_radius_edge_ratio, b->done, b->context);
+  mlim_report* report = &out->report;
+  const size_t known = report->unresolved_ratio_count;
+  report->relabeled_ratio_count -=
+    known < report->relabeled_ratio_count ? known : report->relabeled_ratio_count;
+  return status;
 }
 
 static mlim_status count_open_edges(build* b, mlim_mesh* out)
@@ -276,35 +321,11 @@ static mlim_status count_open_edges(build* b, mlim_mesh* out)
     out, &b->edges, b->done, b->context, &out->certificate.open_edge_count);
 }
 
-static mlim_status count_unresolved(build* b, mlim_mesh* out)
-{
-  mlim_report* report = &out->report;
-  const mlim_status status =
-    mlim_unresolved_count(&b->refinement.complex, b->options, b->done, b->context, report);
-  report->insertion_count = b->insertion_count + b->refinement.insertion_count;
-  report->relabeled_cell_count = b->relabeled_cell_count;
-  report->hidden_ball_count = b->hidden_ball_count;
-  report->unresolved_patch_count = b->stray_count;
-  const size_t known = report->unresolved_ratio_count;
-  report->relabeled_ratio_count -=
-    known < report->relabeled_ratio_count ? known : report->relabeled_ratio_count;
-  return status;
-}
-
-static mlim_status count_disks(build* b, mlim_mesh* out)
-{
-  const mlim_status status = mlim_disks_settle(&b->refinement, MLIM_CERTIFY_FROM, b->context);
-  return status == MLIM_OK ? mlim_mesh_list_failures(&b->refinement.complex, b->context, out)
-                           : status;
-}
-
 static mlim_status certify(build* b, mlim_mesh* out)
 {
-  const mlim_certificate_input input = { .complex = &b->refinement.complex,
-    .components = &b->components,
-    .options = b->options,
-    .volumes = b->volumes,
-    .voxels = b->voxels };
+  const mlim_certificate_input input = {
+    .oracle = &b->oracle, .options = b->options, .volumes = b->volumes, .voxels = b->voxels
+  };
   return mlim_certificate_measure(&input, b->context, out);
 }
 
@@ -312,8 +333,8 @@ static mlim_status read_and_measure(build* b, mlim_mesh* out)
 {
   /* Certifying reports the rest of the stage itself. */
   mlim_status (*const steps[])(build*, mlim_mesh*) = { find_boundary, tidy, settle_pinches, read,
-    find_edges, find_patches, settle_edges, measure_quality, count_open_edges, count_unresolved,
-    count_disks, certify };
+    count_unresolved, count_disks, count_components, release_complex, find_edges, find_patches,
+    settle_edges, measure_quality, count_open_edges, certify };
   const size_t count = sizeof steps / sizeof *steps;
   /* Seeding may have ended at the vertex limit. */
   mlim_status status = mlim_refine_update(&b->refinement, b->context);
@@ -364,6 +385,7 @@ static mlim_status refine(const mlim_field* field, const mlim_balls* balls,
     .used_balls = balls,
     .options = &complete,
     .context = context,
+    .has_volume = volume != NULL,
     .oracle = {
       .field = field, .tolerance = complete.crossing_tolerance, .mode = complete.oracle_mode } };
   status = mlim_progress(context, MLIM_STAGE_SURFACE, 0);

@@ -140,15 +140,14 @@ static int reserve_generations(cells* c)
   return 0;
 }
 
-static mlim_status fill(
-  cells* c, const mlim_delaunay_zone* zone, const double point[3], int32_t label)
+static mlim_status fill(cells* c, const mlim_delaunay_zone* zone, int32_t label)
 {
   mlim_delaunay_zone made;
   for (size_t k = 0; k < zone->count; ++k)
   {
     ++c->generations[zone->cells[k]];
   }
-  const mlim_status status = mlim_zone_fill(c->complex, point, label, c->context, &made);
+  const mlim_status status = mlim_zone_fill(c->complex, label, c->context, &made);
   if (status != MLIM_OK)
   {
     return status;
@@ -210,7 +209,7 @@ static mlim_status mend(cells* c, int32_t id, const verdict* v)
       .least_squared = k == 0 ? floor : mlim_max(floor, off) };
     if (mlim_zone_is_free(c->complex, &zone, point, &demand))
     {
-      return fill(c, &zone, point, cell.label);
+      return fill(c, &zone, cell.label);
     }
   }
   return MLIM_OK;

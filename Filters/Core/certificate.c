@@ -36,9 +36,7 @@ static int32_t component_at(
     const int32_t p[3] = { low[0] + (c & 1), low[1] + (c >> 1 & 1), low[2] + (c >> 2 & 1) };
     if (mlim_field_point_label(field, p) == complex->cells[cell].label)
     {
-      return components
-        ->of_point[(size_t)p[0] +
-                   (size_t)grid->dims[0] * ((size_t)p[1] + (size_t)grid->dims[1] * (size_t)p[2])];
+      return mlim_components_at(components, field, p);
     }
   }
   return -1;
@@ -110,6 +108,27 @@ static void count_labels(const mlim_components* components, size_t min_voxels,
   }
 }
 
+mlim_status mlim_certificate_count_components(const mlim_complex* complex,
+  const mlim_components* components, size_t min_voxels, mlim_context* context, mlim_mesh* mesh)
+{
+  unsigned char* is_found = mlim_allocate(components->count, 1);
+  unsigned char* state = mlim_allocate(mesh->label_count, 1);
+  mlim_status status = MLIM_OK;
+  if (is_found == NULL || state == NULL)
+  {
+    status = mlim_fail_memory(context, "the certificate");
+  }
+  else
+  {
+    mlim_certificate_find_components(
+      complex, components, min_voxels, is_found, &mesh->certificate.lost_component_count);
+    count_labels(components, min_voxels, is_found, mesh, state, &mesh->certificate);
+  }
+  mlim_release(is_found);
+  mlim_release(state);
+  return status;
+}
+
 /* ---- grid crossings ---- */
 
 typedef struct slice_result
@@ -120,7 +139,7 @@ typedef struct slice_result
 
 typedef struct distance_job
 {
-  const mlim_complex* complex;
+  const mlim_oracle* oracle;
   const mlim_nearest* nearest;
   double bound, limit;
   slice_result* slices;
@@ -148,9 +167,9 @@ static void visit_crossing(
 static void distance_body(void* data, size_t begin, size_t end)
 {
   const distance_job* job = (const distance_job*)data;
-  const mlim_oracle exact = { .field = job->complex->oracle.field,
-    .tolerance = job->complex->oracle.tolerance,
-    .mode = MLIM_ORACLE_EXACT };
+  const mlim_oracle exact = {
+    .field = job->oracle->field, .tolerance = job->oracle->tolerance, .mode = MLIM_ORACLE_EXACT
+  };
   for (size_t z = begin; z < end; ++z)
   {
     distance_visit visit = { .job = job, .result = &job->slices[z] };
@@ -159,17 +178,18 @@ static void distance_body(void* data, size_t begin, size_t end)
 }
 
 static mlim_status measure_distances(
-  const mlim_complex* complex, const mlim_options* options, mlim_context* context, mlim_mesh* mesh)
+  const mlim_oracle* oracle, const mlim_options* options, mlim_context* context, mlim_mesh* mesh)
 {
-  const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
+  const mlim_field_grid* grid = mlim_field_grid_of(oracle->field);
+  const mlim_triangles triangles = mlim_triangles_of(mesh);
   mlim_nearest nearest;
-  mlim_status status = mlim_nearest_create(mesh, grid->size, grid->unit, context, &nearest);
+  mlim_status status = mlim_nearest_create(&triangles, grid->size, grid->unit, context, &nearest);
   if (status != MLIM_OK)
   {
     return status;
   }
   const size_t slices = (size_t)grid->dims[2];
-  distance_job job = { .complex = complex,
+  distance_job job = { .oracle = oracle,
     .nearest = &nearest,
     .bound = options->facet_distance,
     .limit = 4 * options->facet_distance + 2 * grid->unit,
@@ -217,29 +237,8 @@ static void compare_volumes(
 mlim_status mlim_certificate_measure(
   const mlim_certificate_input* input, mlim_context* context, mlim_mesh* mesh)
 {
-  const mlim_complex* complex = input->complex;
-  const mlim_components* components = input->components;
-  const mlim_options* options = input->options;
-  unsigned char* is_found = mlim_allocate(components->count, 1);
-  unsigned char* state = mlim_allocate(mesh->label_count, 1);
-  mlim_status status = MLIM_OK;
-  if (is_found == NULL || state == NULL)
-  {
-    status = mlim_fail_memory(context, "the certificate");
-    goto done;
-  }
-  mlim_certificate_find_components(complex, components, options->min_component_voxels, is_found,
-    &mesh->certificate.lost_component_count);
-  count_labels(
-    components, options->min_component_voxels, is_found, mesh, state, &mesh->certificate);
-  compare_volumes(complex->oracle.field, input->volumes, input->voxels, mesh);
-  status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, MLIM_CERTIFY_FROM);
-  if (status == MLIM_OK)
-  {
-    status = measure_distances(complex, options, context, mesh);
-  }
-done:
-  mlim_release(is_found);
-  mlim_release(state);
-  return status;
+  compare_volumes(input->oracle->field, input->volumes, input->voxels, mesh);
+  const mlim_status status = mlim_progress(context, MLIM_STAGE_CERTIFICATE, MLIM_CERTIFY_FROM);
+  return status == MLIM_OK ? measure_distances(input->oracle, input->options, context, mesh)
+                           : status;
 }

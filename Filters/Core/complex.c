@@ -21,8 +21,6 @@ mlim_status mlim_complex_create(
   const size_t labels = (size_t)mlim_field_label_count(oracle->field);
   out->distance_shares = mlim_allocate(labels, sizeof *out->distance_shares);
   if (out->distance_shares == NULL ||
-      mlim_reserve(
-        &out->vertices, &out->vertex_capacity, MLIM_FAR_VERTICES, sizeof *out->vertices) ||
       mlim_reserve(&out->facets, &out->facet_capacity, 1, sizeof *out->facets))
   {
     mlim_complex_free(out);
@@ -34,10 +32,12 @@ mlim_status mlim_complex_create(
   }
   out->facets[0] = (mlim_facet){ 0 };
   out->facet_count = 1;
+  out->vertices = mlim_delaunay_vertices(out->delaunay);
   for (int32_t v = 0; v < MLIM_FAR_VERTICES; ++v)
   {
-    out->vertices[v] = (mlim_vertex){ .kind = MLIM_VERTEX_FAR, .ball = -1, .cell = MLIM_NO_CELL };
-    mlim_delaunay_far_vertex(out->delaunay, v, out->vertices[v].point);
+    out->vertices[v].kind = MLIM_VERTEX_FAR;
+    out->vertices[v].ball = -1;
+    out->vertices[v].cell = MLIM_NO_CELL;
   }
   out->vertex_count = MLIM_FAR_VERTICES;
   return MLIM_OK;
@@ -47,13 +47,23 @@ void mlim_complex_free(mlim_complex* complex)
 {
   mlim_delaunay_free(complex->delaunay);
   mlim_release(complex->distance_shares);
-  mlim_release(complex->vertices);
+  mlim_complex_free_records(complex);
+  *complex = (mlim_complex){ 0 };
+}
+
+void mlim_complex_free_records(mlim_complex* complex)
+{
   mlim_release(complex->facets);
   mlim_release(complex->free_facets);
   mlim_release(complex->fresh);
   mlim_release(complex->made);
   mlim_release(complex->dirty);
-  *complex = (mlim_complex){ 0 };
+  complex->facets = NULL;
+  complex->free_facets = complex->fresh = complex->made = complex->dirty = NULL;
+  complex->facet_count = complex->free_count = complex->fresh_count = 0;
+  complex->facet_capacity = complex->free_capacity = complex->fresh_capacity = 0;
+  complex->made_count = complex->dirty_count = 0;
+  complex->made_capacity = complex->dirty_capacity = 0;
 }
 
 size_t mlim_complex_count_broken(const mlim_complex* complex)
@@ -127,7 +137,7 @@ int mlim_complex_is_on_sheet(
 
 /* ---- records ---- */
 
-/* Room is there: dirty_capacity grows with vertex_capacity. */
+/* Room for all vertices is there. */
 void mlim_complex_touch_vertex(mlim_complex* complex, int32_t vertex)
 {
   mlim_vertex* v = &complex->vertices[vertex];
@@ -171,6 +181,15 @@ void mlim_complex_borrow_cells(mlim_complex* complex)
   complex->cells = all.cells;
   complex->spheres = all.spheres;
   complex->cell_count = all.count;
+}
+
+void mlim_complex_borrow_vertices(mlim_complex* complex, const mlim_vertex* last)
+{
+  complex->vertices = mlim_delaunay_vertices(complex->delaunay);
+  mlim_vertex* vertex = &complex->vertices[complex->vertex_count++];
+  vertex->kind = last->kind;
+  vertex->ball = last->ball;
+  vertex->sheet = last->sheet;
 }
 
 void mlim_complex_take_cell(mlim_complex* complex, int32_t cell)
@@ -268,9 +287,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
       "The mesh has %zu vertices, the limit; what is still bad is counted.",
       complex->vertex_limit - MLIM_FAR_VERTICES);
   }
-  if (mlim_reserve(&complex->vertices, &complex->vertex_capacity, complex->vertex_count + 1,
-        sizeof *complex->vertices) ||
-      mlim_reserve(&complex->dirty, &complex->dirty_capacity, complex->vertex_capacity,
+  if (mlim_reserve_apart(&complex->dirty, &complex->dirty_capacity, complex->vertex_count + 1,
         sizeof *complex->dirty))
   {
     return mlim_fail_memory(context, "the triangulation");
@@ -279,19 +296,19 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   {
     empty_zone(complex);
   }
-  const int32_t vertex = (int32_t)complex->vertex_count++;
-  complex->vertices[vertex] = complex->pending;
-  complex->vertices[vertex].is_dirty = 0;
-  complex->vertices[vertex].is_broken = 0;
   mlim_delaunay_zone made;
   const mlim_status status =
     mlim_delaunay_fill(complex->delaunay, context, is_recorded ? &made : NULL);
+  if (status == MLIM_OK)
+  {
+    mlim_complex_borrow_vertices(complex, &complex->pending);
+  }
   if (status != MLIM_OK || !is_recorded)
   {
     return status;
   }
   mlim_complex_borrow_cells(complex);
-  if (mlim_reserve(&complex->made, &complex->made_capacity, complex->made_count + made.count,
+  if (mlim_reserve_apart(&complex->made, &complex->made_capacity, complex->made_count + made.count,
         sizeof *complex->made))
   {
     return mlim_fail_memory(context, "the triangulation");
@@ -307,7 +324,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
 mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context)
 {
   mlim_complex_borrow_cells(complex);
-  if (mlim_reserve(
+  if (mlim_reserve_apart(
         &complex->made, &complex->made_capacity, complex->cell_count, sizeof *complex->made))
   {
     return mlim_fail_memory(context, "the triangulation");

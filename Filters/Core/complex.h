@@ -13,14 +13,6 @@
 #include "delaunay.h"
 #include "oracle.h"
 
-/* A piece of interface: the labels of its two sides, the lower first, and the face of the box on
-   which it lies, -1 inside. */
-typedef struct mlim_sheet
-{
-  int32_t low, high;
-  int32_t face;
-} mlim_sheet;
-
 enum
 {
   MLIM_NO_LABEL = -1 /* of a cell that was made since the records were brought up to date */
@@ -34,30 +26,17 @@ typedef enum mlim_vertex_kind
   MLIM_VERTEX_INSIDE   /* of the volume alone */
 } mlim_vertex_kind;
 
-typedef struct mlim_vertex
-{
-  double point[3];
-  double weight;
-  int32_t cell;     /* one of the cells that have it */
-  int32_t ball;     /* index of its ball, -1 */
-  mlim_sheet sheet; /* of a surface vertex */
-  unsigned char kind;
-  unsigned char
-    is_dirty; /* its star of restricted facets has changed since the disk was looked at */
-  unsigned char is_broken; /* its disk failed at the last look */
-} mlim_vertex;
-
 typedef struct mlim_facet
 {
-  double crossing[3];  /* the farthest one from the facet's vertices */
-  mlim_sheet sheet;    /* crossed there */
-  int32_t cell;        /* facet `index` of this cell */
-  uint32_t generation; /* counts the uses of this record */
-  unsigned char index;
-  unsigned char is_alive;
-  unsigned char is_multiple; /* crosses more often than the labels of its cells tell */
-  unsigned char is_judged;   /* for the loop, which looks at each facet once */
-  unsigned char is_settled;  /* for verification, which does so too */
+  double crossing[3]; /* the farthest one from the facet's vertices */
+  mlim_sheet sheet;   /* crossed there */
+  unsigned char index : 2;
+  unsigned char is_alive : 1;
+  unsigned char is_multiple : 1; /* crosses more often than the labels of its cells tell */
+  unsigned char is_judged : 1;   /* for the loop, which looks at each facet once */
+  unsigned char is_settled : 1;  /* for verification, which does so too */
+  int32_t cell;                  /* facet `index` of this cell */
+  uint32_t generation;           /* counts the uses of this record */
 } mlim_facet;
 
 typedef struct mlim_complex
@@ -66,8 +45,8 @@ typedef struct mlim_complex
   const mlim_balls* balls; /* borrowed */
   double* distance_shares; /* a label: part of facet_distance allowed at its sheets; 1 at first */
   mlim_delaunay* delaunay;
-  mlim_vertex* vertices;
-  size_t vertex_count, vertex_capacity;
+  mlim_vertex* vertices; /* borrowed from the triangulation */
+  size_t vertex_count;
   mlim_cell* cells; /* borrowed from the triangulation, once all is recorded; dead ones too */
   const mlim_power_sphere* spheres; /* of the cells, also borrowed */
   size_t cell_count;
@@ -92,6 +71,9 @@ mlim_status mlim_complex_create(
   const mlim_oracle* oracle, const mlim_balls* balls, mlim_context* context, mlim_complex* out);
 void mlim_complex_free(mlim_complex* complex);
 
+/* The records are needed no more: the cells and vertices stay. */
+void mlim_complex_free_records(mlim_complex* complex);
+
 /* Looks where a vertex would go; *is_found: it can be inserted. start and kind as in
    mlim_delaunay_find. */
 mlim_status mlim_complex_probe(mlim_complex* complex, const mlim_vertex* vertex, int32_t start,
@@ -109,6 +91,9 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
 /* Takes over all cells that are there. For after a first series of insertions; until then commits leave
    them to the triangulation. */
 mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context);
+
+/* Borrows the vertices anew after an insertion: the new one has the kind, ball and sheet of `last`. */
+void mlim_complex_borrow_vertices(mlim_complex* complex, const mlim_vertex* last);
 
 /* Borrows the cells anew after an insertion, and notes one of them with its vertices. Its label is 0 at first.
    For what goes in without being recorded: the inside of volumes. */

@@ -55,7 +55,7 @@ static int add_row(run_list* list, const uint16_t* labels, int32_t count)
     {
       ++end;
     }
-    if (mlim_reserve(&list->runs, &list->capacity, list->count + 1, sizeof *list->runs))
+    if (mlim_reserve_apart(&list->runs, &list->capacity, list->count + 1, sizeof *list->runs))
     {
       return 1;
     }
@@ -160,38 +160,57 @@ static void extend(mlim_component* c, const run* r, int32_t y, int32_t z)
   c->voxel_count += (size_t)(r->end - r->begin);
 }
 
-typedef struct fill_job
+/* The first of equals is the largest. */
+static void find_largest(size_t label_count, mlim_components* out)
 {
-  const run_list* list;
-  size_t row_length;
-  int32_t* of_point;
-} fill_job;
-
-static void fill_body(void* data, size_t begin, size_t end)
-{
-  const fill_job* job = (const fill_job*)data;
-  for (size_t row = begin; row < end; ++row)
+  for (size_t l = 0; l < label_count; ++l)
   {
-    for (size_t k = job->list->rows[row]; k < job->list->rows[row + 1]; ++k)
+    out->largest[l] = -1;
+  }
+  for (size_t c = 0; c < out->count; ++c)
+  {
+    int32_t* largest = &out->largest[out->components[c].label];
+    if (*largest < 0 || out->components[c].voxel_count > out->components[*largest].voxel_count)
     {
-      const run* r = &job->list->runs[k];
-      for (int32_t x = r->begin; x < r->end; ++x)
-      {
-        job->of_point[row * job->row_length + (size_t)x] = -1 - r->parent;
-      }
+      *largest = (int32_t)c;
     }
   }
 }
 
-static mlim_status fill(
-  const mlim_field_grid* grid, const run_list* list, mlim_context* context, mlim_components* out)
+static int is_lesser(const run* r, const mlim_components* components)
 {
-  fill_job job = { .list = list, .row_length = (size_t)grid->dims[0], .of_point = out->of_point };
-  return mlim_parallel_stage(
-    context, &(mlim_stage_work){ .count = (size_t)grid->dims[1] * (size_t)grid->dims[2],
-               .body = fill_body,
-               .job = &job,
-               .stage = MLIM_STAGE_SURFACE });
+  return -1 - r->parent != components->largest[r->label];
+}
+
+/* Keeps the runs of lesser components. Not 0: out of memory. */
+static int keep_lesser(const run_list* list, size_t row_count, mlim_components* out)
+{
+  size_t count = 0;
+  for (size_t k = 0; k < list->count; ++k)
+  {
+    count += (size_t)is_lesser(&list->runs[k], out);
+  }
+  out->runs = mlim_allocate(count, sizeof *out->runs);
+  if (out->runs == NULL)
+  {
+    return 1;
+  }
+  count = 0;
+  for (size_t row = 0; row < row_count; ++row)
+  {
+    out->rows[row] = (int32_t)count;
+    for (size_t k = list->rows[row]; k < list->rows[row + 1]; ++k)
+    {
+      const run* r = &list->runs[k];
+      if (is_lesser(r, out))
+      {
+        out->runs[count++] =
+          (mlim_component_run){ .begin = r->begin, .end = r->end, .component = -1 - r->parent };
+      }
+    }
+  }
+  out->rows[row_count] = (int32_t)count;
+  return 0;
 }
 
 static void measure(const mlim_field_grid* grid, const run_list* list, mlim_components* out)
@@ -235,9 +254,11 @@ mlim_status mlim_components_find(
     return mlim_fail(context, MLIM_INVALID_ARGUMENT,
       "The image has %zu points; components can be told apart in at most %d.", points, INT_MAX);
   }
+  const size_t labels = (size_t)mlim_field_label_count(field);
   run_list list = { .rows = mlim_allocate_zeroed(rows + 1, sizeof *list.rows) };
-  out->of_point = mlim_allocate(points, sizeof *out->of_point);
-  mlim_status status = list.rows == NULL || out->of_point == NULL
+  out->rows = mlim_allocate(rows + 1, sizeof *out->rows);
+  out->largest = mlim_allocate(labels, sizeof *out->largest);
+  mlim_status status = list.rows == NULL || out->rows == NULL || out->largest == NULL
                          ? mlim_fail_memory(context, "the components of the labels")
                          : scan(field, context, &list);
   if (status == MLIM_OK)
@@ -250,7 +271,10 @@ mlim_status mlim_components_find(
   if (status == MLIM_OK)
   {
     measure(grid, &list, out);
-    status = fill(grid, &list, context, out);
+    find_largest(labels, out);
+    status = keep_lesser(&list, rows, out)
+               ? mlim_fail_memory(context, "the components of the labels")
+               : mlim_progress(context, MLIM_STAGE_SURFACE, 0);
   }
   if (status != MLIM_OK)
   {
@@ -261,9 +285,37 @@ mlim_status mlim_components_find(
   return status;
 }
 
+int32_t mlim_components_at(
+  const mlim_components* components, const mlim_field* field, const int32_t point[3])
+{
+  const size_t row =
+    (size_t)point[1] + (size_t)mlim_field_grid_of(field)->dims[1] * (size_t)point[2];
+  int32_t low = components->rows[row];
+  int32_t high = components->rows[row + 1];
+  const int32_t last = high;
+  /* The first run that ends beyond the point. */
+  while (low < high)
+  {
+    const int32_t middle = low + (high - low) / 2;
+    if (components->runs[middle].end <= point[0])
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low < last && components->runs[low].begin <= point[0]
+           ? components->runs[low].component
+           : components->largest[mlim_field_point_label(field, point)];
+}
+
 void mlim_components_free(mlim_components* components)
 {
   mlim_release(components->components);
-  mlim_release(components->of_point);
+  mlim_release(components->largest);
+  mlim_release(components->rows);
+  mlim_release(components->runs);
   *components = (mlim_components){ 0 };
 }

@@ -11,15 +11,29 @@ typedef struct mlim_component
   int32_t extremes[6][3]; /* a grid point that is least / most along x, y, z */
 } mlim_component;
 
+/* Grid points of one row that belong to a lesser component of their label. */
+typedef struct mlim_component_run
+{
+  int32_t begin, end; /* x of the first point, and past the last */
+  int32_t component;
+} mlim_component_run;
+
+/* Nearly all grid points are in the largest component of their label: only the others are listed. */
 typedef struct mlim_components
 {
   size_t count;
   mlim_component* components; /* in the order of their first grid points */
-  int32_t* of_point;          /* component of each grid point */
+  int32_t* largest;           /* of each label; -1: it has no grid point */
+  int32_t* rows;              /* first run of each row of grid points, and past the last */
+  mlim_component_run* runs;   /* ascending in their row */
 } mlim_components;
 
 mlim_status mlim_components_find(
   const mlim_field* field, mlim_context* context, mlim_components* out);
+
+/* The component of a grid point of the same field. */
+int32_t mlim_components_at(
+  const mlim_components* components, const mlim_field* field, const int32_t point[3]);
 void mlim_components_free(mlim_components* components);
 
 #endif

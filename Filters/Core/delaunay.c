@@ -8,7 +8,7 @@
 
 enum
 {
-  FIRST_CELLS = 1 << 19
+  FIRST_CELLS = 1 << 8 /* more than there are fours of far vertices */
 };
 
 /* The centre is exact where the plain formula is not good enough; then the sphere decides nothing. */
@@ -24,7 +24,7 @@ mlim_status delaunay_make_sphere(mlim_delaunay* d, int32_t cell, mlim_context* c
     weights[k] = corners[k][3];
   }
   mlim_power_sphere* sphere = &d->spheres[cell];
-  return mlim_power_sphere_make((const double(*)[3])points, weights, sphere)
+  return mlim_power_sphere_make((const double(*)[3])points, weights, sphere, &d->cells[cell].bound)
            ? MLIM_OK
            : mlim_predicates_center(corners, context, sphere->center);
 }
@@ -33,16 +33,16 @@ int delaunay_reserve_cells(mlim_delaunay* d, size_t count)
 {
   const size_t needed = d->cell_count + count;
   return needed > INT32_MAX ||
-         mlim_reserve(&d->cells, &d->cell_capacity, needed, sizeof *d->cells) ||
-         mlim_reserve(&d->spheres, &d->sphere_capacity, needed, sizeof *d->spheres);
+         mlim_reserve_apart(&d->cells, &d->cell_capacity, needed, sizeof *d->cells) ||
+         mlim_reserve_apart(&d->spheres, &d->sphere_capacity, needed, sizeof *d->spheres);
 }
 
 int delaunay_reserve_vertex(mlim_delaunay* d)
 {
   const size_t needed = d->vertex_count + 1;
   return needed > INT32_MAX ||
-         mlim_reserve(&d->vertices, &d->vertex_capacity, needed, sizeof *d->vertices) ||
-         mlim_reserve(&d->places, &d->place_capacity, needed, sizeof *d->places);
+         mlim_reserve_apart(&d->vertices, &d->vertex_capacity, needed, sizeof *d->vertices) ||
+         mlim_reserve_apart(&d->places, &d->place_capacity, needed, sizeof *d->places);
 }
 
 /* ---- start ---- */
@@ -140,13 +140,13 @@ static mlim_status make_far_vertices(mlim_delaunay* d, const double size[3], mli
     }
     const double off = 0.0078125 * k;
     const double shift[3] = { off, -0.75 * off, off * off * 3 };
-    delaunay_point* v = &d->vertices[d->vertex_count];
+    mlim_vertex* v = &d->vertices[d->vertex_count];
+    *v = (mlim_vertex){ .cell = 0 };
     for (int a = 0; a < 3; ++a)
     {
       const double sign = k >> a & 1 ? 1 : -1;
       v->at[a] = 0.5 * size[a] + largest * (3 * sign + shift[a]);
     }
-    v->at[3] = 0;
     d->places[d->vertex_count++] = 0;
   }
   return MLIM_OK;
@@ -190,9 +190,9 @@ void mlim_delaunay_free(mlim_delaunay* delaunay)
   mlim_release(delaunay);
 }
 
-void mlim_delaunay_far_vertex(const mlim_delaunay* delaunay, int32_t vertex, double out[3])
+mlim_vertex* mlim_delaunay_vertices(mlim_delaunay* delaunay)
 {
-  memcpy(out, delaunay->vertices[vertex].at, 3 * sizeof *out);
+  return delaunay->vertices;
 }
 
 mlim_delaunay_cells mlim_delaunay_all(mlim_delaunay* delaunay)

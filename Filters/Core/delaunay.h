@@ -18,22 +18,54 @@
 enum
 {
   MLIM_NO_CELL = -1,
-  MLIM_FAR_VERTICES = 8
+  MLIM_FAR_VERTICES = 8,
+  MLIM_CLEARANCE_PARTS = 256 /* of a cell of the grid */
 };
 
 typedef struct mlim_delaunay mlim_delaunay;
+
+/* A piece of interface: the labels of its two sides, the lower first, and the face of the box on
+   which it lies, -1 inside. */
+typedef struct mlim_sheet
+{
+  uint16_t low, high;
+  signed char face;
+} mlim_sheet;
+
+/* A vertex, shared with the client, which has but this one copy of it. 48 bytes. */
+typedef struct mlim_vertex
+{
+  union
+  {
+    double at[4]; /* the triangulation's own */
+    struct
+    {
+      double point[3];
+      double weight;
+    };
+  };
+  /* The client's. All 0 when the vertex is made. */
+  int32_t cell;           /* one of the cells that have it */
+  int32_t ball;           /* index of its ball, -1 */
+  mlim_sheet sheet;       /* of a surface vertex */
+  unsigned char kind : 6; /* mlim_vertex_kind */
+  unsigned char
+    is_dirty : 1; /* its star of restricted facets has changed since the disk was looked at */
+  unsigned char is_broken : 1; /* its disk failed at the last look */
+} mlim_vertex;
 
 /* A positively oriented tetrahedron, shared with the client. 64 bytes: what a walk from cell to cell needs
    is in one line of the cache, in whose size the time goes. */
 typedef struct mlim_cell
 {
-  int32_t vertices[4];  /* vertices[0] < 0: a dead cell, with nothing else in it */
-  int32_t neighbors[4]; /* neighbour k is opposite to vertex k */
-  uint32_t seen;        /* the triangulation's own */
+  int32_t vertices[4];    /* vertices[0] < 0: a dead cell, with nothing else in it */
+  int32_t neighbors[4];   /* neighbour k is opposite to vertex k */
+  uint32_t seen;          /* the triangulation's own */
+  mlim_power_bound bound; /* of the sphere; also the triangulation's own */
   /* The client's. All 0 when the cell is made. */
+  uint16_t clearance; /* mlim_field_look at the centre, in parts of MLIM_CLEARANCE_PARTS, or less */
   uint32_t mark;
   int32_t label;
-  float clearance;   /* mlim_field_look at the centre */
   int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
 } mlim_cell;
 
@@ -49,8 +81,8 @@ typedef struct mlim_delaunay_cells
 mlim_status mlim_delaunay_create(const double size[3], mlim_context* context, mlim_delaunay** out);
 void mlim_delaunay_free(mlim_delaunay* delaunay);
 
-/* Positions of the far vertices. */
-void mlim_delaunay_far_vertex(const mlim_delaunay* delaunay, int32_t vertex, double out[3]);
+/* All vertices by id, the far ones first. Borrowed until the next fill. */
+mlim_vertex* mlim_delaunay_vertices(mlim_delaunay* delaunay);
 
 /* Borrowed until the next fill. */
 mlim_delaunay_cells mlim_delaunay_all(mlim_delaunay* delaunay);

@@ -27,7 +27,7 @@ static int reserve_fill(mlim_delaunay* d)
   return 3 * count > INT32_MAX ||
          delaunay_reserve_cells(d, count > free_count ? count - free_count : 0) ||
          delaunay_reserve_vertex(d) ||
-         mlim_reserve(&d->free_cells, &d->free_capacity, free_count, sizeof *d->free_cells) ||
+         mlim_reserve_apart(&d->free_cells, &d->free_capacity, free_count, sizeof *d->free_cells) ||
          mlim_reserve(&d->made, &d->made_capacity, count, sizeof *d->made) ||
          mlim_reserve(&d->slots, &d->slot_capacity, count_slots(d), sizeof *d->slots);
 }
@@ -143,7 +143,8 @@ mlim_status mlim_delaunay_fill(
   }
   d->has_zone = 0;
   const int32_t vertex = (int32_t)d->vertex_count++;
-  d->vertices[vertex] = d->point;
+  d->vertices[vertex] = (mlim_vertex){ .cell = 0 };
+  memcpy(d->vertices[vertex].at, d->point.at, sizeof d->point.at);
   d->places[vertex] = 0;
   take_ids(d);
   make_cells(d, vertex);

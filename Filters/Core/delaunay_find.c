@@ -55,7 +55,8 @@ static mlim_status locate(mlim_delaunay* d, int32_t start, mlim_context* context
 static inline mlim_status is_in_conflict(
   const mlim_delaunay* d, int32_t cell, mlim_context* context, int* out)
 {
-  const int side = mlim_power_sphere_side(&d->spheres[cell], d->point.at, d->point.at[3]);
+  const int side =
+    mlim_power_sphere_side(&d->spheres[cell], &d->cells[cell].bound, d->point.at, d->point.at[3]);
   *out = side < 0;
   if (side != 0)
   {

@@ -29,7 +29,7 @@ struct mlim_delaunay
   size_t cell_count, cell_capacity, sphere_capacity;
   int32_t* free_cells; /* ids of dead cells, last in first out */
   size_t free_count, free_capacity;
-  delaunay_point* vertices;
+  mlim_vertex* vertices;
   int32_t* places; /* a vertex: its place in `around`, if it is there */
   size_t vertex_count, vertex_capacity, place_capacity;
   int32_t last; /* a cell of the last insertion: what is asked for next is often near */

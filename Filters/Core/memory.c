@@ -4,6 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const size_t SMALL = (size_t)1 << 18; /* bytes */
+
+/* Just above the size from which glibc always maps a block on its own, whatever was released before. */
+static const size_t APART = ((size_t)1 << 25) + 4096;
+
 void* mlim_allocate(size_t count, size_t size)
 {
   if (size != 0 && count > (SIZE_MAX / 2) / size)
@@ -54,4 +59,12 @@ int mlim_grow(void* array, size_t* capacity, size_t needed, size_t size)
   memcpy(array, &moved, sizeof moved);
   *capacity = grown;
   return 0;
+}
+
+int mlim_grow_apart(void* array, size_t* capacity, size_t needed, size_t size)
+{
+  const size_t least = APART / size + 1;
+  const int has_space = SIZE_MAX > UINT32_MAX; /* of addresses */
+  return mlim_grow(
+    array, capacity, has_space && needed > SMALL / size && needed < least ? least : needed, size);
 }

@@ -34,4 +34,15 @@ static inline int mlim_reserve(void* array, size_t* capacity, size_t needed, siz
   return needed <= *capacity ? 0 : mlim_grow(array, capacity, needed, size);
 }
 
+/* What mlim_reserve_apart does when there is no room. */
+int mlim_grow_apart(void* array, size_t* capacity, size_t needed, size_t size);
+
+/* The same for the few arrays that grow to tens of megabytes beside each other. Once they are not small they
+   have so much room that the system maps them on their own: what is not in use takes no memory, they
+   grow without a copy, and leave no holes when they are released. */
+static inline int mlim_reserve_apart(void* array, size_t* capacity, size_t needed, size_t size)
+{
+  return needed <= *capacity ? 0 : mlim_grow_apart(array, capacity, needed, size);
+}
+
 #endif

@@ -9,10 +9,18 @@
 /* No more bins than this a triangle: a large box with a small mesh must not cost memory. */
 static const double BINS_A_TRIANGLE = 4;
 
+/* Nor more along an axis: their numbers have 16 bits while they are filled. */
+static const double MAX_BINS = 65535;
+
 static int32_t bin_of(const mlim_nearest* nearest, double value, int axis)
 {
   const double b = value / nearest->bin;
   return b < 0 ? 0 : b >= nearest->bins[axis] ? nearest->bins[axis] - 1 : (int32_t)b;
+}
+
+static const double* point_of(const mlim_nearest* nearest, int32_t vertex)
+{
+  return nearest->mesh.points + nearest->mesh.stride * (size_t)vertex;
 }
 
 /* ---- sorting ---- */
@@ -25,7 +33,7 @@ enum
 /* Low and high bins that a triangle may touch. */
 typedef struct bin_range
 {
-  int32_t low, high;
+  uint16_t low, high;
 } bin_range;
 
 typedef struct bin_rows
@@ -43,13 +51,12 @@ typedef struct sorting
 
 static bin_range range_of(const mlim_nearest* nearest, size_t t, int axis)
 {
-  const int32_t* v = nearest->mesh->triangles + 3 * t;
-  const double* points = nearest->mesh->vertices + axis;
-  const double a = points[3 * (size_t)v[0]];
-  const double b = points[3 * (size_t)v[1]];
-  const double c = points[3 * (size_t)v[2]];
-  return (bin_range){ .low = bin_of(nearest, mlim_min(a, mlim_min(b, c)), axis),
-    .high = bin_of(nearest, mlim_max(a, mlim_max(b, c)), axis) };
+  const int32_t* v = nearest->mesh.vertices + 3 * t;
+  const double a = point_of(nearest, v[0])[axis];
+  const double b = point_of(nearest, v[1])[axis];
+  const double c = point_of(nearest, v[2])[axis];
+  return (bin_range){ .low = (uint16_t)bin_of(nearest, mlim_min(a, mlim_min(b, c)), axis),
+    .high = (uint16_t)bin_of(nearest, mlim_max(a, mlim_max(b, c)), axis) };
 }
 
 static void range_body(void* data, size_t begin, size_t end)
@@ -97,7 +104,7 @@ static void slab_body(void* data, size_t begin, size_t end)
   const size_t layers = (size_t)s->nearest->bins[2];
   const int32_t first = (int32_t)(layers * begin / SLABS);
   const int32_t last = (int32_t)(layers * end / SLABS) - 1;
-  for (size_t t = 0; t < s->nearest->mesh->triangle_count; ++t)
+  for (size_t t = 0; t < s->nearest->mesh.count; ++t)
   {
     const bin_range z = s->layers[t];
     if (z.low <= last && z.high >= first)
@@ -110,7 +117,7 @@ static void slab_body(void* data, size_t begin, size_t end)
 /* Each bin lists its triangles in ascending order. Not 0: out of memory. */
 static int sort_triangles(mlim_nearest* nearest, size_t bin_count, mlim_context* context)
 {
-  const size_t count = nearest->mesh->triangle_count;
+  const size_t count = nearest->mesh.count;
   sorting s = { .nearest = nearest,
     .layers = mlim_allocate(count, sizeof *s.layers),
     .ranges = mlim_allocate(count, sizeof *s.ranges) };
@@ -118,11 +125,14 @@ static int sort_triangles(mlim_nearest* nearest, size_t bin_count, mlim_context*
   {
     mlim_parallel_for(context, count, range_body, &s);
     mlim_parallel_for(context, SLABS, slab_body, &s);
+    size_t uses = 0;
     for (size_t b = 0; b < bin_count; ++b)
     {
-      nearest->offsets[b + 2] += nearest->offsets[b + 1];
+      uses += nearest->offsets[b + 2];
+      nearest->offsets[b + 2] = (uint32_t)uses;
     }
-    nearest->triangles = mlim_allocate(nearest->offsets[bin_count + 1], sizeof *nearest->triangles);
+    nearest->triangles =
+      uses <= UINT32_MAX ? mlim_allocate(uses, sizeof *nearest->triangles) : NULL;
   }
   if (nearest->triangles != NULL)
   {
@@ -134,17 +144,19 @@ static int sort_triangles(mlim_nearest* nearest, size_t bin_count, mlim_context*
   return nearest->triangles == NULL;
 }
 
-mlim_status mlim_nearest_create(const mlim_mesh* mesh, const double size[3], double side,
+mlim_status mlim_nearest_create(const mlim_triangles* triangles, const double size[3], double side,
   mlim_context* context, mlim_nearest* out)
 {
-  *out = (mlim_nearest){ .mesh = mesh, .bin = side };
-  const double most = BINS_A_TRIANGLE * (double)mesh->triangle_count + 1000;
+  *out = (mlim_nearest){ .mesh = *triangles, .bin = side };
+  const double most = BINS_A_TRIANGLE * (double)triangles->count + 1000;
   const double wanted = (size[0] / side + 1) * (size[1] / side + 1) * (size[2] / side + 1);
   if (wanted > most)
   {
     out->bin = side * cbrt(wanted / most);
   }
   size_t count = 1;
+  const double longest = mlim_max(size[0], mlim_max(size[1], size[2]));
+  out->bin = mlim_max(out->bin, longest / (MAX_BINS - 1));
   for (int k = 0; k < 3; ++k)
   {
     out->bins[k] = (int32_t)(size[k] / out->bin) + 1;
@@ -220,12 +232,11 @@ static double triangle_distance_squared(
 static double bin_distance_squared(
   const mlim_nearest* nearest, size_t bin, const double point[3], double best, double enough)
 {
-  const mlim_mesh* mesh = nearest->mesh;
   for (size_t k = nearest->offsets[bin]; k < nearest->offsets[bin + 1]; ++k)
   {
-    const int32_t* t = mesh->triangles + 3 * (size_t)nearest->triangles[k];
-    best = triangle_distance_squared(point, mesh->vertices + 3 * (size_t)t[0],
-      mesh->vertices + 3 * (size_t)t[1], mesh->vertices + 3 * (size_t)t[2], best);
+    const int32_t* t = nearest->mesh.vertices + 3 * (size_t)nearest->triangles[k];
+    best = triangle_distance_squared(
+      point, point_of(nearest, t[0]), point_of(nearest, t[1]), point_of(nearest, t[2]), best);
     if (best <= enough)
     {
       break;

@@ -4,17 +4,34 @@
 
 #include "mlim.h"
 
+/* Triangles of points wherever these are. Borrowed. */
+typedef struct mlim_triangles
+{
+  size_t count;
+  const int32_t* vertices; /* 3 each */
+  const double* points;
+  size_t stride; /* from one point to the next */
+} mlim_triangles;
+
+static inline mlim_triangles mlim_triangles_of(const mlim_mesh* mesh)
+{
+  return (mlim_triangles){ .count = mesh->triangle_count,
+    .vertices = mesh->triangles,
+    .points = mesh->vertices,
+    .stride = 3 };
+}
+
 typedef struct mlim_nearest
 {
-  const mlim_mesh* mesh; /* borrowed */
-  double bin;            /* side of a bin */
+  mlim_triangles mesh;
+  double bin; /* side of a bin */
   int32_t bins[3];
-  size_t* offsets; /* bins + 1, into triangles */
+  uint32_t* offsets; /* bins + 1, into triangles */
   int32_t* triangles;
 } mlim_nearest;
 
 /* Bins of about this side over the box [0, size]. */
-mlim_status mlim_nearest_create(const mlim_mesh* mesh, const double size[3], double side,
+mlim_status mlim_nearest_create(const mlim_triangles* triangles, const double size[3], double side,
   mlim_context* context, mlim_nearest* out);
 void mlim_nearest_free(mlim_nearest* nearest);
 

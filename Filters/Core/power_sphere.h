@@ -27,13 +27,22 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 typedef struct mlim_power_sphere
 {
   double center[3];
-  double level;      /* R: squared radius, that is, power of the vertices */
-  float base, slope; /* the bound is base + slope |x - c|_1, apart from the rounding of S itself */
+  double level; /* R: squared radius, that is, power of the vertices */
 } mlim_power_sphere;
+
+/* The bound is 2^base + 2^slope |x - c|_1, apart from the rounding of S itself. As powers of two, with the
+   exponents as a float has them, it takes 2 bytes, and may be twice as large as it has to be: next to
+   the distances that it is compared with, both are nearly nothing. 255 is infinite. */
+typedef struct mlim_power_bound
+{
+  unsigned char base, slope;
+} mlim_power_bound;
 
 /* Below this squared ratio of volume to edge lengths the plain formulas lose more than five of their
    sixteen digits. Below the least product of squared lengths they lose them to underflow. */
@@ -44,12 +53,29 @@ typedef struct mlim_power_sphere
 #define MLIM_SPHERE_SLACK 1.001
 #define MLIM_SPHERE_TINY 1e-300
 
+/* The next power of two, as an exponent; for values above 0. */
+static inline unsigned char mlim_power_bound_round(double value)
+{
+  const float narrow = (float)value;
+  uint32_t bits;
+  memcpy(&bits, &narrow, sizeof bits);
+  const uint32_t exponent = (bits >> 23) + 1;
+  return (unsigned char)(exponent < 255 ? exponent : 255);
+}
+
+static inline double mlim_power_bound_value(unsigned char exponent)
+{
+  const uint32_t bits = (uint32_t)exponent << 23;
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return (double)value;
+}
+
 /* A sphere that decides nothing. */
-static inline void mlim_power_sphere_clear(mlim_power_sphere* sphere)
+static inline void mlim_power_sphere_clear(mlim_power_sphere* sphere, mlim_power_bound* bound)
 {
   sphere->level = 0;
-  sphere->base = INFINITY;
-  sphere->slope = 0;
+  *bound = (mlim_power_bound){ .base = 255, .slope = 255 };
 }
 
 static inline double mlim_power_sphere_squared(const double a[3], const double b[3])
@@ -59,8 +85,8 @@ static inline double mlim_power_sphere_squared(const double a[3], const double b
 }
 
 /* Sets level and bound for a centre. `gradient`: the sum of |n_k|_1 / v. */
-static inline void mlim_power_sphere_bound(
-  const double points[4][3], const double weights[4], double gradient, mlim_power_sphere* sphere)
+static inline void mlim_power_sphere_bound(const double points[4][3], const double weights[4],
+  double gradient, mlim_power_sphere* sphere, mlim_power_bound* bound)
 {
   const double first = mlim_power_sphere_squared(points[0], sphere->center);
   double worst = 0;
@@ -75,14 +101,14 @@ static inline void mlim_power_sphere_bound(
   }
   const double residual = worst + MLIM_SPHERE_ROUNDING * most;
   const double growth = 2.1 * gradient;
-  sphere->base = (float)(MLIM_SPHERE_SLACK * residual * (1 + growth * sqrt(first))) + FLT_MIN;
-  sphere->slope = (float)(MLIM_SPHERE_SLACK * residual * growth) + FLT_MIN;
+  bound->base = mlim_power_bound_round(MLIM_SPHERE_SLACK * residual * (1 + growth * sqrt(first)));
+  bound->slope = mlim_power_bound_round(MLIM_SPHERE_SLACK * residual * growth);
 }
 
 /* Weighted circumcentre and bound of a positively oriented tetrahedron. Returns 0, and clears the
    sphere, when it is too flat for that. */
-static inline int mlim_power_sphere_make(
-  const double points[4][3], const double weights[4], mlim_power_sphere* out)
+static inline int mlim_power_sphere_make(const double points[4][3], const double weights[4],
+  mlim_power_sphere* out, mlim_power_bound* bound)
 {
   double edge[3][3];
   double right[3];
@@ -112,7 +138,7 @@ static inline int mlim_power_sphere_make(
     edge[0][0] * normal[0][0] + edge[0][1] * normal[0][1] + edge[0][2] * normal[0][2];
   if (!(volume > 0) || volume * volume < MLIM_SPHERE_FLAT * product || product < MLIM_SPHERE_LEAST)
   {
-    mlim_power_sphere_clear(out);
+    mlim_power_sphere_clear(out, bound);
     return 0;
   }
   for (int j = 0; j < 3; ++j)
@@ -121,23 +147,24 @@ static inline int mlim_power_sphere_make(
       points[0][j] +
       0.5 * (right[0] * normal[0][j] + right[1] * normal[1][j] + right[2] * normal[2][j]) / volume;
   }
-  mlim_power_sphere_bound(points, weights, sum / volume, out);
+  mlim_power_sphere_bound(points, weights, sum / volume, out, bound);
   return 1;
 }
 
 /* -1: the weighted point is in conflict with the cell, that is, nearer in power than its vertices are to
    the centre; 1: it is not; 0: undecided. */
-static inline int mlim_power_sphere_side(
-  const mlim_power_sphere* sphere, const double point[3], double weight)
+static inline int mlim_power_sphere_side(const mlim_power_sphere* sphere,
+  const mlim_power_bound* bound, const double point[3], double weight)
 {
   const double d[3] = { point[0] - sphere->center[0], point[1] - sphere->center[1],
     point[2] - sphere->center[2] };
   const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   const double value = squared - sphere->level - weight;
-  const double bound =
-    (double)sphere->base + (double)sphere->slope * (fabs(d[0]) + fabs(d[1]) + fabs(d[2])) +
+  const double most =
+    mlim_power_bound_value(bound->base) +
+    mlim_power_bound_value(bound->slope) * (fabs(d[0]) + fabs(d[1]) + fabs(d[2])) +
     MLIM_SPHERE_ROUNDING * (squared + fabs(sphere->level) + weight) + MLIM_SPHERE_TINY;
-  return value > bound ? 1 : value < -bound ? -1 : 0;
+  return value > most ? 1 : value < -most ? -1 : 0;
 }
 
 #endif

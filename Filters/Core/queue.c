@@ -25,14 +25,20 @@ void mlim_queue_start(mlim_queue* queue, const double size[3])
                                   mlim_max(size[0], mlim_max(size[1], size[2])) };
 }
 
-void mlim_queue_free(mlim_queue* queue)
+void mlim_queue_shrink(mlim_queue* queue)
 {
   for (int b = 0; b < MLIM_QUEUE_BINS; ++b)
   {
     mlim_release(queue->bins[b].entries);
   }
   mlim_release(queue->batch.entries);
-  *queue = (mlim_queue){ 0 };
+  *queue = (mlim_queue){ .scale = queue->scale };
+}
+
+void mlim_queue_free(mlim_queue* queue)
+{
+  mlim_queue_shrink(queue);
+  queue->scale = 0;
 }
 
 static int clamp(double value, int count)
@@ -116,7 +122,7 @@ int mlim_queue_push_at(
   mlim_queue* queue, int bin, const double point[3], int32_t record, uint32_t generation)
 {
   mlim_queue_bin* b = &queue->bins[bin];
-  if (mlim_reserve(&b->entries, &b->capacity, b->count + 1, sizeof *b->entries))
+  if (mlim_reserve_apart(&b->entries, &b->capacity, b->count + 1, sizeof *b->entries))
   {
     return 1;
   }

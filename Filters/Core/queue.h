@@ -35,6 +35,9 @@ typedef struct mlim_queue
 void mlim_queue_start(mlim_queue* queue, const double size[3]);
 void mlim_queue_free(mlim_queue* queue);
 
+/* Gives back the room of a queue that is empty for now. */
+void mlim_queue_shrink(mlim_queue* queue);
+
 /* Bin of a badness; excess = measure / bound, above 1, orders within size, distance and ratio. */
 int mlim_queue_bin_of(mlim_badness badness, double excess);
 mlim_badness mlim_queue_badness_of(int bin);

@@ -46,6 +46,13 @@ static size_t least(size_t a, size_t b)
 
 /* ---- labels ---- */
 
+/* Rounded down: less is only looked at more closely. */
+static uint16_t narrow(float clearance)
+{
+  const float parts = clearance * MLIM_CLEARANCE_PARTS;
+  return (uint16_t)(parts < UINT16_MAX ? parts : UINT16_MAX);
+}
+
 static void label_piece(const update* u, size_t piece)
 {
   mlim_complex* complex = u->complex;
@@ -61,7 +68,7 @@ static void label_piece(const update* u, size_t piece)
   {
     mlim_cell* cell = &complex->cells[complex->made[k]];
     cell->label = looks[k - begin].label;
-    cell->clearance = looks[k - begin].clearance;
+    cell->clearance = narrow(looks[k - begin].clearance);
   }
 }
 
@@ -111,13 +118,19 @@ static int is_clear(const mlim_complex* complex, int32_t a, int32_t b)
   {
     longest = mlim_max(longest, fabs(start[k] - end[k]) * inverse[k]);
   }
-  return longest <= (double)complex->cells[a].clearance + (double)complex->cells[b].clearance;
+  return longest * MLIM_CLEARANCE_PARTS <=
+         complex->cells[a].clearance + complex->cells[b].clearance;
 }
 
 static mlim_sheet sheet_between(int32_t from, int32_t to, int32_t face)
 {
   const int is_up = from < to;
   return (mlim_sheet){ .low = is_up ? from : to, .high = is_up ? to : from, .face = face };
+}
+
+static float widen(const mlim_cell* cell)
+{
+  return (float)cell->clearance / MLIM_CLEARANCE_PARTS;
 }
 
 /* Looks along the dual of a facet. */
@@ -135,7 +148,7 @@ static void cross_facet(const mlim_complex* complex, finding* out)
   const mlim_segment dual = { .ends = { mlim_complex_center(complex, out->cell),
                                 mlim_complex_center(complex, n) },
     .labels = { cell->label, other->label },
-    .clearances = { cell->clearance, other->clearance } };
+    .clearances = { widen(cell), widen(other) } };
   mlim_crossing crossing[MAX_CROSSINGS];
   const size_t count =
     mlim_oracle_crossings_between(&complex->oracle, &dual, MAX_CROSSINGS, crossing);
@@ -230,9 +243,9 @@ static int32_t new_record(mlim_complex* complex)
     return complex->free_facets[--complex->free_count];
   }
   if (complex->facet_count >= INT32_MAX - 1 ||
-      mlim_reserve(&complex->facets, &complex->facet_capacity, complex->facet_count + 1,
+      mlim_reserve_apart(&complex->facets, &complex->facet_capacity, complex->facet_count + 1,
         sizeof *complex->facets) ||
-      mlim_reserve(&complex->free_facets, &complex->free_capacity, complex->facet_capacity,
+      mlim_reserve_apart(&complex->free_facets, &complex->free_capacity, complex->facet_capacity,
         sizeof *complex->free_facets))
   {
     return 0;
@@ -255,7 +268,7 @@ static int apply(mlim_complex* complex, const finding* found)
   if (found->crosses)
   {
     record = new_record(complex);
-    if (record == 0 || mlim_reserve(&complex->fresh, &complex->fresh_capacity,
+    if (record == 0 || mlim_reserve_apart(&complex->fresh, &complex->fresh_capacity,
                          complex->fresh_count + 1, sizeof *complex->fresh))
     {
       return 1;

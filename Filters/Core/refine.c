@@ -270,6 +270,7 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
     }
     else
     {
+      mlim_queue_shrink(&r->queue);
       break;
     }
   }

@@ -113,26 +113,17 @@ static int is_boundary(const mlim_complex* complex, const mlim_facet* facet)
 
 enum
 {
-  BLOCK = 1 << 12,           /* records whose triangles follow each other */
-  VERTICES_A_PIECE = 1 << 17 /* between two looks at the host: some milliseconds */
+  BLOCK = 1 << 12,    /* records whose triangles follow each other */
+  BLOCKS_A_PIECE = 32 /* between two looks at the host: some milliseconds */
 };
 
 typedef struct skin_job
 {
   const mlim_complex* complex;
   const mlim_skin_blocks* blocks;
-  mlim_mesh* mesh;
+  mlim_skin* skin;
   size_t* counts; /* triangles of each block of records, at the block's place in the mesh */
 } skin_job;
-
-static void vertex_body(void* data, size_t begin, size_t end)
-{
-  const skin_job* job = (const skin_job*)data;
-  for (size_t v = begin; v < end; ++v)
-  {
-    mlim_copy(job->complex->vertices[v].point, job->mesh->vertices + 3 * v);
-  }
-}
 
 static void facet_body(void* data, size_t begin, size_t end)
 {
@@ -147,7 +138,7 @@ static void facet_body(void* data, size_t begin, size_t end)
     {
       mlim_ahead_of_record(complex, f, last);
       const mlim_facet* facet = &complex->facets[f];
-      int32_t* triangle = job->mesh->triangles + 3 * (b * BLOCK + count);
+      int32_t* triangle = job->skin->triangles + 3 * (b * BLOCK + count);
       if (is_boundary(complex, facet))
       {
         mlim_complex_facet_vertices(complex, facet->cell, facet->index, triangle);
@@ -161,7 +152,7 @@ static void facet_body(void* data, size_t begin, size_t end)
 /* Closes the gaps between the blocks' triangles. */
 static void close_up(const skin_job* job, size_t block_count)
 {
-  int32_t* triangles = job->mesh->triangles;
+  int32_t* triangles = job->skin->triangles;
   size_t count = 0;
   for (size_t b = 0; b < block_count; ++b)
   {
@@ -169,27 +160,20 @@ static void close_up(const skin_job* job, size_t block_count)
       triangles + 3 * count, triangles + 3 * b * BLOCK, 3 * job->counts[b] * sizeof *triangles);
     count += job->counts[b];
   }
-  job->mesh->triangle_count = count;
+  job->skin->triangle_count = count;
 }
 
 static mlim_status read_all(const skin_job* job, double done, mlim_context* context)
 {
   const size_t block_count = (job->complex->facet_count + BLOCK - 1) / BLOCK;
-  mlim_stage_work work = { .count = job->complex->vertex_count,
-    .body = vertex_body,
+  const mlim_stage_work work = { .count = block_count,
+    .body = facet_body,
     .job = (void*)job,
     .stage = MLIM_STAGE_SURFACE,
     .from = done,
     .to = done,
-    .step = VERTICES_A_PIECE };
-  mlim_status status = mlim_parallel_stage(context, &work);
-  if (status == MLIM_OK)
-  {
-    work.count = block_count;
-    work.body = facet_body;
-    work.step = VERTICES_A_PIECE / BLOCK;
-    status = mlim_parallel_stage(context, &work);
-  }
+    .step = BLOCKS_A_PIECE };
+  const mlim_status status = mlim_parallel_stage(context, &work);
   if (status == MLIM_OK)
   {
     close_up(job, block_count);
@@ -198,23 +182,28 @@ static mlim_status read_all(const skin_job* job, double done, mlim_context* cont
 }
 
 mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
-  mlim_context* context, mlim_mesh* out)
+  mlim_context* context, mlim_skin* out)
 {
-  *out = (mlim_mesh){ .vertex_count = complex->vertex_count };
-  out->vertices = mlim_allocate(3 * complex->vertex_count, sizeof *out->vertices);
+  *out = (mlim_skin){ 0 };
   out->triangles = mlim_allocate(3 * complex->facet_count, sizeof *out->triangles);
   const skin_job job = { .complex = complex,
     .blocks = blocks,
-    .mesh = out,
+    .skin = out,
     .counts = mlim_allocate(complex->facet_count / BLOCK + 1, sizeof *job.counts) };
   const mlim_status status =
-    out->vertices != NULL && out->triangles != NULL && job.counts != NULL
+    out->triangles != NULL && job.counts != NULL
       ? read_all(&job, done, context)
       : mlim_fail_memory(context, "the triangles near the grid's crossings");
   mlim_release(job.counts);
   if (status != MLIM_OK)
   {
-    mlim_mesh_free(out);
+    mlim_skin_free(out);
   }
   return status;
+}
+
+void mlim_skin_free(mlim_skin* skin)
+{
+  mlim_release(skin->triangles);
+  *skin = (mlim_skin){ 0 };
 }

@@ -19,9 +19,16 @@ mlim_status mlim_skin_blocks_create(
 void mlim_skin_blocks_free(mlim_skin_blocks* blocks);
 void mlim_skin_blocks_add(mlim_skin_blocks* blocks, const double point[3]);
 
-/* The triangles that reach into the blocks. Vertices have the complex's ids; only `vertices` and
-   `triangles` of the mesh are set. `done` is reported as the share of the surface's stage. */
+/* Triangles of the complex's vertices, by their ids. */
+typedef struct mlim_skin
+{
+  size_t triangle_count;
+  int32_t* triangles; /* 3 each */
+} mlim_skin;
+
+/* The triangles that reach into the blocks. `done` is reported as the share of the surface's stage. */
 mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
-  mlim_context* context, mlim_mesh* out);
+  mlim_context* context, mlim_skin* out);
+void mlim_skin_free(mlim_skin* skin);
 
 #endif

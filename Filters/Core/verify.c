@@ -67,11 +67,9 @@ typedef struct far_visit
 
 static int is_small(const far_job* job, const int32_t point[3])
 {
-  const int32_t* dims = mlim_field_grid_of(job->oracle.field)->dims;
   const mlim_components* components = job->verification->components;
-  const size_t at =
-    (size_t)point[0] + (size_t)dims[0] * ((size_t)point[1] + (size_t)dims[1] * (size_t)point[2]);
-  return components->components[components->of_point[at]].voxel_count < job->min_voxels;
+  const int32_t at = mlim_components_at(components, job->oracle.field, point);
+  return components->components[at].voxel_count < job->min_voxels;
 }
 
 static int is_far(const far_job* job, const mlim_crossing* crossing)
@@ -130,24 +128,24 @@ static void far_body(void* data, size_t begin, size_t end)
   }
 }
 
-static mlim_status insert_far(
-  const far_job* job, size_t slices, mlim_context* context, size_t* count)
+static mlim_status insert_far(const mlim_verification* v, mlim_context* context, size_t* count)
 {
-  mlim_complex* complex = &job->verification->refinement->complex;
-  const mlim_options* options = job->verification->refinement->options;
+  mlim_complex* complex = &v->refinement->complex;
+  const size_t slices = (size_t)mlim_field_grid_of(complex->oracle.field)->dims[2];
+  const mlim_options* options = v->refinement->options;
   /* The first rounds take few of the crossings that lie together; what they do not bring near is
      left for the later ones, which look closer. */
-  const double distance = mlim_max(
-    options->smallest_distance, 0.25 * options->facet_size * pow(0.5, job->verification->round));
+  const double distance =
+    mlim_max(options->smallest_distance, 0.25 * options->facet_size * pow(0.5, v->round));
   mlim_status status = MLIM_OK;
   for (size_t z = 0; z < slices && status == MLIM_OK; ++z)
   {
-    for (size_t k = 0; k < job->lists[z].count && status == MLIM_OK; ++k)
+    for (size_t k = 0; k < v->far[z].count && status == MLIM_OK; ++k)
     {
-      status = mlim_seeds_insert(complex, &job->lists[z].crossings[k], distance, context, count);
+      status = mlim_seeds_insert(complex, &v->far[z].crossings[k], distance, context, count);
       if (status == MLIM_OK && k % 256 == 255)
       {
-        status = mlim_refine_report(job->verification->refinement, context);
+        status = mlim_refine_report(v->refinement, context);
       }
     }
   }
@@ -164,21 +162,22 @@ static int has_failed(const far_job* job, size_t slices)
   return failed;
 }
 
-static int has_many_far(const far_job* job, size_t slices)
+static int has_many_far(const mlim_verification* v)
 {
+  const int32_t slices = mlim_field_grid_of(v->refinement->complex.oracle.field)->dims[2];
   double far = 0;
   double seen = 0;
-  for (size_t z = 0; z < slices; ++z)
+  for (int32_t z = 0; z < slices; ++z)
   {
-    far += (double)job->lists[z].count;
-    seen += (double)job->lists[z].seen_count;
+    far += (double)v->far[z].count;
+    seen += (double)v->far[z].seen_count;
   }
   return far > FAR_SHARE * seen;
 }
 
 /* The triangles among which a crossing may find one that is near: all, or those near the crossings that
    were far at the last look. */
-static mlim_status read_skin(const mlim_verification* v, mlim_context* context, mlim_mesh* out)
+static mlim_status read_skin(const mlim_verification* v, mlim_context* context, mlim_skin* out)
 {
   const mlim_complex* complex = &v->refinement->complex;
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
@@ -206,7 +205,7 @@ static mlim_status read_skin(const mlim_verification* v, mlim_context* context, 
 }
 
 static mlim_status look_at_slices(
-  mlim_verification* v, const mlim_nearest* nearest, mlim_context* context, size_t* count)
+  mlim_verification* v, const mlim_nearest* nearest, mlim_context* context)
 {
   const mlim_complex* complex = &v->refinement->complex;
   const mlim_options* options = v->refinement->options;
@@ -237,29 +236,32 @@ static mlim_status look_at_slices(
   {
     status = mlim_fail_memory(context, "the crossings far from the mesh");
   }
-  return status == MLIM_OK && has_many_far(&job, slices) ? insert_far(&job, slices, context, count)
-                                                         : status;
+  return status;
 }
 
 static mlim_status look_for_far(mlim_verification* v, mlim_context* context, size_t* count)
 {
   const mlim_field_grid* grid = mlim_field_grid_of(v->refinement->complex.oracle.field);
-  mlim_mesh skin = { 0 };
+  mlim_skin skin = { 0 };
   mlim_nearest nearest = { 0 };
   mlim_status status = mlim_refine_report(v->refinement, context);
   status = status == MLIM_OK ? read_skin(v, context, &skin) : status;
   status = status == MLIM_OK ? mlim_refine_report(v->refinement, context) : status;
   if (status == MLIM_OK)
   {
-    status = mlim_nearest_create(&skin, grid->size, grid->unit, context, &nearest);
+    const mlim_triangles triangles = { .count = skin.triangle_count,
+      .vertices = skin.triangles,
+      .points = v->refinement->complex.vertices->point,
+      .stride = sizeof(mlim_vertex) / sizeof(double) };
+    status = mlim_nearest_create(&triangles, grid->size, grid->unit, context, &nearest);
   }
   if (status == MLIM_OK)
   {
-    status = look_at_slices(v, &nearest, context, count);
+    status = look_at_slices(v, &nearest, context);
   }
   mlim_nearest_free(&nearest);
-  mlim_mesh_free(&skin);
-  return status;
+  mlim_skin_free(&skin);
+  return status == MLIM_OK && has_many_far(v) ? insert_far(v, context, count) : status;
 }
 
 /* ---- facets off their interface, or too large for their film ---- */

@@ -38,8 +38,8 @@ static void take_cells(mlim_complex* complex, const mlim_delaunay_zone* made, in
   }
 }
 
-mlim_status mlim_zone_fill(mlim_complex* complex, const double point[3], int32_t label,
-  mlim_context* context, mlim_delaunay_zone* made)
+mlim_status mlim_zone_fill(
+  mlim_complex* complex, int32_t label, mlim_context* context, mlim_delaunay_zone* made)
 {
   if (complex->vertex_count >= complex->vertex_limit)
   {
@@ -47,17 +47,10 @@ mlim_status mlim_zone_fill(mlim_complex* complex, const double point[3], int32_t
       "The mesh has %zu vertices, the limit; what is still bad is counted.",
       complex->vertex_limit - MLIM_FAR_VERTICES);
   }
-  if (mlim_reserve(&complex->vertices, &complex->vertex_capacity, complex->vertex_count + 1,
-        sizeof *complex->vertices))
-  {
-    return mlim_fail_memory(context, "the triangulation");
-  }
-  const size_t vertex = complex->vertex_count++;
-  complex->vertices[vertex] = (mlim_vertex){ .kind = MLIM_VERTEX_INSIDE, .ball = -1 };
-  mlim_copy(point, complex->vertices[vertex].point);
   const mlim_status status = mlim_delaunay_fill(complex->delaunay, context, made);
   if (status == MLIM_OK)
   {
+    mlim_complex_borrow_vertices(complex, &(mlim_vertex){ .kind = MLIM_VERTEX_INSIDE, .ball = -1 });
     take_cells(complex, made, label);
   }
   return status;

@@ -18,7 +18,7 @@ int mlim_zone_is_free(const mlim_complex* complex, const mlim_delaunay_zone* zon
 
 /* Inserts the point of the last find. `made` are the new cells, borrowed until the next call.
    MLIM_VERTEX_LIMIT, and nothing has changed, when that many vertices are there. */
-mlim_status mlim_zone_fill(mlim_complex* complex, const double point[3], int32_t label,
-  mlim_context* context, mlim_delaunay_zone* made);
+mlim_status mlim_zone_fill(
+  mlim_complex* complex, int32_t label, mlim_context* context, mlim_delaunay_zone* made);
 
 #endif

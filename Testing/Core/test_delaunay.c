@@ -247,8 +247,7 @@ static mlim_delaunay* start(cloud* c)
   c->volume = 0;
   for (int32_t v = 0; v < MLIM_FAR_VERTICES; ++v)
   {
-    double at[3];
-    mlim_delaunay_far_vertex(delaunay, v, at);
+    const double* at = mlim_delaunay_vertices(delaunay)[v].point;
     for (int k = 0; k < 3; ++k)
     {
       c->points[v][k] = (int64_t)at[k];

@@ -50,8 +50,7 @@ struct Pair
     CHECK(mlim_delaunay_create(Size, nullptr, &this->Ours) == MLIM_OK);
     for (int32_t v = 0; v < MLIM_FAR_VERTICES; ++v)
     {
-      double at[3];
-      mlim_delaunay_far_vertex(this->Ours, v, at);
+      const double* at = mlim_delaunay_vertices(this->Ours)[v].point;
       this->AddToPeer(at, 0);
     }
   }

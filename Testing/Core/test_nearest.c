@@ -98,8 +98,9 @@ static double brute_distance(const mlim_mesh* mesh, const double p[3])
 
 static void test_points(const mlim_mesh* mesh, double side, uint64_t seed)
 {
+  const mlim_triangles triangles = mlim_triangles_of(mesh);
   mlim_nearest nearest;
-  CHECK(mlim_nearest_create(mesh, SIZE, side, NULL, &nearest) == MLIM_OK);
+  CHECK(mlim_nearest_create(&triangles, SIZE, side, NULL, &nearest) == MLIM_OK);
   for (int n = 0; n < 150; ++n)
   {
     double p[3];

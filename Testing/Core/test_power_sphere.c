@@ -98,9 +98,10 @@ static void ask(const integers* n, double scale, double offset, tally* t)
     }
   }
   mlim_power_sphere sphere;
-  mlim_power_sphere_make((const double(*)[3])points, weights, &sphere);
+  mlim_power_bound bound;
+  mlim_power_sphere_make((const double(*)[3])points, weights, &sphere, &bound);
   const int exact = exact_side(n);
-  const int side = mlim_power_sphere_side(&sphere, points[4], weights[4]);
+  const int side = mlim_power_sphere_side(&sphere, &bound, points[4], weights[4]);
   ++t->asked;
   t->decided += side != 0;
   t->wrong += side != 0 && side != exact;
@@ -121,7 +122,9 @@ static void approach(integers* n)
     }
   }
   mlim_power_sphere sphere;
-  if (!mlim_power_sphere_make((const double(*)[3])points, weights, &sphere) || sphere.level <= 0)
+  mlim_power_bound bound;
+  if (!mlim_power_sphere_make((const double(*)[3])points, weights, &sphere, &bound) ||
+      sphere.level <= 0)
   {
     return;
   }
