@@ -1,12 +1,22 @@
 #include "criteria.h"
 
 #include "vector.h"
+#include "wedge.h"
 
 #include <math.h>
 
 /* MLIM_NEAR_GUARD where facet_distance itself is at stake: the sheet bends right beside the ball. At 1/4 half
    as many more triangles are off their sheet, at 0 no fewer, with more vertices. */
 static const double DISTANCE_GUARD = 0.1;
+
+/* In films thinner than FILM smallest distances a facet with a vertex of the other sheet is refined down to
+   NEAREST of them: the labels that would hide it otherwise leave cells without any shape. Nearer, or in thicker
+   films, vertices are spent that better nothing. */
+static const double FILM = 0.75;
+static const double NEAREST = 0.6;
+
+/* Part of the reach at which the look across a film begins: off the sheet itself. */
+static const double NEXT = 0.04;
 
 typedef struct triangle
 {
@@ -174,6 +184,53 @@ static double guard_of(const mlim_complex* complex, const mlim_options* options,
                                                                  : MLIM_QUALITY_GUARD;
 }
 
+/* Whether the facet's crossing is on a film, whose other sheet is within `reach`. Sharp wedges are none: they lose
+   volume where vertices stand nearer to their edge. */
+static int is_in_film(const mlim_complex* complex, const mlim_facet* facet, double reach)
+{
+  const mlim_oracle* oracle = &complex->oracle;
+  const mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE,
+    .sheet = facet->sheet,
+    .point = { facet->crossing[0], facet->crossing[1], facet->crossing[2] } };
+  double normal[3]; /* towards the lower label */
+  int is_found = 0;
+  if (facet->sheet.face >= 0 ||
+      !mlim_field_normal(oracle->field, vertex.point, facet->sheet.low, facet->sheet.high, normal))
+  {
+    return 0;
+  }
+  for (int side = 0; side < 2; ++side)
+  {
+    const int32_t label = side == 0 ? facet->sheet.low : facet->sheet.high;
+    const double length = side == 0 ? reach : -reach;
+    double near[3];
+    double far[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      near[k] = vertex.point[k] + NEXT * length * normal[k];
+      far[k] = vertex.point[k] + length * normal[k];
+    }
+    mlim_crossing crossing;
+    if (mlim_field_label(oracle->field, far) == label ||
+        mlim_oracle_crossings(oracle, near, far, 1, &crossing) == 0 || crossing.face >= 0)
+    {
+      continue;
+    }
+    const int is_up = crossing.from < crossing.to;
+    mlim_vertex across = { .kind = MLIM_VERTEX_SURFACE,
+      .sheet = { .low = is_up ? crossing.from : crossing.to,
+        .high = is_up ? crossing.to : crossing.from,
+        .face = -1 } };
+    mlim_copy(crossing.point, across.point);
+    if (mlim_wedge_is_at(oracle, &vertex, &across))
+    {
+      return 0;
+    }
+    is_found = 1;
+  }
+  return is_found;
+}
+
 int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* options,
   const mlim_facet* facet, mlim_badness badness)
 {
@@ -186,7 +243,10 @@ int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* op
   /* A partner across a film may have come nearer to a vertex of its own sheet. Shape alone makes no edge
      shorter than the facet has, so the triangles there can be bettered without an end to fear. */
   const int is_graded = badness == MLIM_BAD_RATIO && t.heaviest == 0 && power >= t.shortest_squared;
-  if (power < least && !is_graded)
+  const int is_film = badness == MLIM_BAD_SHEET && t.heaviest == 0 && power < least &&
+                      power >= NEAREST * NEAREST * least &&
+                      is_in_film(complex, facet, FILM * options->smallest_distance);
+  if (power < least && !is_graded && !is_film)
   {
     return 0;
   }

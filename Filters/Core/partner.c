@@ -3,6 +3,8 @@
 #include "vector.h"
 #include "wedge.h"
 
+#include <math.h>
+
 /* In units of the smallest distance: films up to THICKEST get pairs of vertices, thinner ones than
    THINNEST no vertex at all. Thicker: more vertices, where triangles would have been right without;
    thinner: cells so flat that nothing is won. */
@@ -11,9 +13,10 @@ static const double THINNEST = 0.03;
 
 /* A partner keeps this distance from other vertices of its sheet, in units of the smallest distance: nearer
    ones leave triangles above the radius-edge bound. In films thinner than THIN it may be nearer, since
-   they need pairs more. */
+   they need pairs more, and so near as its own vertex is to others, but for its part AS_APART. */
 static const double APART = 1;
 static const double APART_IF_THIN = 0.75;
+static const double AS_APART = 0.8;
 static const double THIN = 0.55;
 
 /* A pair closer than this part of the room round its vertex gives cells too flat for a volume mesh: a cell
@@ -98,6 +101,24 @@ int mlim_partners_find(const mlim_complex* complex, const mlim_options* options,
   return 1;
 }
 
+/* Distance of a vertex to those round the zone of the last probe: in power, so balls count by their rims. */
+static double find_room(const mlim_complex* complex, int32_t vertex)
+{
+  const double* point = complex->vertices[vertex].point;
+  double least = INFINITY;
+  for (size_t c = 0; c < complex->zone.count; ++c)
+  {
+    const int32_t* v = complex->cells[complex->zone.cells[c]].vertices;
+    for (int k = 0; k < 4; ++k)
+    {
+      const mlim_vertex* other = &complex->vertices[v[k]];
+      const double power = mlim_distance_squared(other->point, point) - other->weight;
+      least = v[k] == vertex ? least : mlim_min(least, power);
+    }
+  }
+  return sqrt(mlim_max(0, least));
+}
+
 /* Looks at the vertices round the zone of the last probe. */
 static int has_room(
   const mlim_complex* complex, const mlim_vertex* partner, double apart, double least)
@@ -127,12 +148,17 @@ mlim_status mlim_partner_insert(mlim_complex* complex, const mlim_options* optio
   const double unit = options->smallest_distance;
   const mlim_vertex* own = &complex->vertices[vertex];
   const int is_thin = mlim_distance(own->point, partner->point) < THIN * unit;
-  const double apart = (is_thin ? APART_IF_THIN : APART) * unit;
   int is_found;
   *is_there = 0;
   mlim_status status =
     mlim_complex_probe(complex, partner, own->cell, MLIM_START_NEAR, context, &is_found);
-  if (is_found && has_room(complex, partner, apart, THINNEST * unit))
+  if (!is_found)
+  {
+    return status;
+  }
+  const double apart =
+    is_thin ? mlim_min(APART_IF_THIN * unit, AS_APART * find_room(complex, vertex)) : APART * unit;
+  if (has_room(complex, partner, apart, THINNEST * unit))
   {
     status = mlim_complex_commit(complex, context);
     *is_there = status == MLIM_OK;
