@@ -47,4 +47,8 @@ typedef int32_t (*mlim_label_function)(const void* user, const double point[3]);
 size_t mlim_oracle_bisect(mlim_label_function label, const void* user, const double start[3],
   const double end[3], double tolerance, size_t capacity, mlim_crossing* out);
 
+/* The same for the labels of the field. */
+size_t mlim_oracle_crossings_by_bisection(const mlim_oracle* oracle, const double start[3],
+  const double end[3], size_t capacity, mlim_crossing* out);
+
 #endif

@@ -5,7 +5,7 @@
 #include "refine_disks.h"
 #include "sides.h"
 #include "status.h"
-#include "triangle.h"
+#include "tidy_cell.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -17,109 +17,9 @@ enum
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
   SHAPE_SWEEPS = 3,
-  BLOCK = 4096,       /* cells whose strays are counted together */
   LOOK_EVERY = 65536, /* cells between two looks at the host: some milliseconds */
   MAX_STEPS = 256     /* vertices that one failed vertex may lead to */
 };
-
-/* ---- strays: facets with a vertex that is not on their sheet ---- */
-
-/* The cells round the box keep their label. Any other lies in the box, also if its power centre does
-   not, and may have every label: caps are the facets next to frozen cells, flat whatever happens. */
-static int is_frozen(const mlim_complex* complex, const mlim_cell* cell)
-{
-  for (int k = 0; k < 4; ++k)
-  {
-    if (complex->vertices[cell->vertices[k]].kind == MLIM_VERTEX_FAR)
-    {
-      return 1;
-    }
-  }
-  return 0;
-}
-
-/* Number of vertices of a facet that are not on the sheet between two labels; 0 for equal ones. */
-static int stray_count(
-  const mlim_complex* complex, const mlim_cell* cell, int index, int32_t label, int32_t other)
-{
-  if (label == other)
-  {
-    return 0;
-  }
-  const mlim_sheet sheet = { .low = label < other ? label : other,
-    .high = label < other ? other : label,
-    .face = mlim_complex_face(complex, (int32_t)(cell - complex->cells), index) };
-  int count = 0;
-  for (int k = 1; k < 4; ++k)
-  {
-    count += !mlim_complex_is_on_sheet(
-      complex, &complex->vertices[cell->vertices[(index + k) & 3]], &sheet);
-  }
-  return count;
-}
-
-/* 1 for a facet between two labels whose shape is worse than asked for, away from balls. */
-static int is_misshapen(const mlim_refinement* r, const mlim_cell* cell, int index)
-{
-  const double* p[3];
-  for (int k = 0; k < 3; ++k)
-  {
-    const mlim_vertex* v = &r->complex.vertices[cell->vertices[(index + 1 + k) & 3]];
-    if (v->kind == MLIM_VERTEX_BALL)
-    {
-      return 0;
-    }
-    p[k] = v->point;
-  }
-  const double bound = r->options->facet_radius_edge_ratio;
-  return mlim_radius_edge_ratio_squared(p[0], p[1], p[2]) > bound * bound;
-}
-
-static int cell_strays(const mlim_complex* complex, int32_t id, int32_t label)
-{
-  const mlim_cell* cell = &complex->cells[id];
-  int count = 0;
-  for (int k = 0; k < 4; ++k)
-  {
-    count += stray_count(complex, cell, k, label, complex->cells[cell->neighbors[k]].label);
-  }
-  return count;
-}
-
-static int cell_misshapen(const mlim_refinement* r, int32_t id)
-{
-  const mlim_cell* cell = &r->complex.cells[id];
-  int count = 0;
-  for (int k = 0; k < 4; ++k)
-  {
-    const int32_t other = r->complex.cells[cell->neighbors[k]].label;
-    count += cell->label != other && is_misshapen(r, cell, k);
-  }
-  return count;
-}
-
-/* Facets of a cell whose two labels are not there on their two sides. */
-static int cell_unseen(const mlim_refinement* r, int32_t id)
-{
-  const mlim_complex* complex = &r->complex;
-  const mlim_cell* cell = &complex->cells[id];
-  int count = 0;
-  for (int k = 0; k < 4; ++k)
-  {
-    const int32_t other = complex->cells[cell->neighbors[k]].label;
-    count += cell->label != other &&
-             !mlim_sides_are_seen(complex, id, k, cell->label, other, r->options->facet_distance);
-  }
-  return count;
-}
-
-/* The label beyond a facet, for the cell to take: not from outside the box, so that caps stay flat. */
-static int32_t label_beyond(const mlim_complex* complex, int32_t id, int index)
-{
-  const mlim_cell* cell = &complex->cells[id];
-  return mlim_complex_face(complex, id, index) < 0 ? complex->cells[cell->neighbors[index]].label
-                                                   : cell->label;
-}
 
 /* ---- all facets between two labels at a time ---- */
 
@@ -169,9 +69,9 @@ static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index, i
   const mlim_complex* complex = &r->complex;
   const mlim_cell* cell = &complex->cells[id];
   const int32_t other = complex->cells[cell->neighbors[index]].label;
-  const int is_stray = stray_count(complex, cell, index, cell->label, other) > 0;
+  const int is_stray = tidy_stray_count(complex, cell, index, cell->label, other) > 0;
   const int is_bad =
-    is_misshapen(r, cell, index) ||
+    tidy_is_misshapen(r, cell, index) ||
     (!(is_first_look && is_known_to_be_seen(r, cell, index)) &&
       !mlim_sides_are_seen(complex, id, index, cell->label, other, r->options->facet_distance));
   return (unsigned)is_stray | (unsigned)is_bad << BAD_SHIFT;
@@ -294,16 +194,16 @@ static int32_t best_label(const mlim_complex* complex, int32_t id)
 {
   const mlim_cell* cell = &complex->cells[id];
   int32_t best = cell->label;
-  int least = cell_strays(complex, id, best);
+  int least = tidy_cell_strays(complex, id, best);
   for (int v = 0; v < 4 && least > 0; ++v)
   {
     const mlim_vertex* vertex = &complex->vertices[cell->vertices[v]];
     const int is_inside = vertex->kind == MLIM_VERTEX_SURFACE && vertex->sheet.face < 0;
-    const int32_t tried[3] = { label_beyond(complex, id, v), is_inside ? vertex->sheet.low : best,
-      is_inside ? vertex->sheet.high : best };
+    const int32_t tried[3] = { tidy_label_beyond(complex, id, v),
+      is_inside ? vertex->sheet.low : best, is_inside ? vertex->sheet.high : best };
     for (int t = 0; t < 3; ++t)
     {
-      const int count = cell_strays(complex, id, tried[t]);
+      const int count = tidy_cell_strays(complex, id, tried[t]);
       if (count < least)
       {
         least = count;
@@ -327,7 +227,7 @@ static size_t mend_strays_from(tidier* t, int32_t first)
   {
     const int32_t id = stack[--count];
     mlim_cell* cell = &complex->cells[id];
-    if (!(t->looks[id] & STRAYS) || is_frozen(complex, cell))
+    if (!(t->looks[id] & STRAYS) || tidy_is_frozen(complex, cell))
     {
       continue;
     }
@@ -372,60 +272,6 @@ static size_t count_strays(const tidier* t)
   return count;
 }
 
-typedef struct stray_job
-{
-  const mlim_complex* complex;
-  const mlim_boundary* boundary;
-  size_t* counts; /* of each block of cells */
-} stray_job;
-
-static void stray_body(void* data, size_t begin, size_t end)
-{
-  const stray_job* job = (const stray_job*)data;
-  const mlim_complex* complex = job->complex;
-  for (size_t b = begin; b < end; ++b)
-  {
-    const size_t left = complex->cell_count - b * BLOCK;
-    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
-    job->counts[b] = 0;
-    for (size_t c = b * BLOCK; c < last; ++c)
-    {
-      const mlim_cell* cell = &complex->cells[c];
-      const unsigned sides = job->boundary->sides[c] >> MLIM_FIRST_SHIFT;
-      for (int k = 0; sides >> k != 0; ++k)
-      {
-        job->counts[b] += sides >> k & 1u && stray_count(complex, cell, k, cell->label,
-                                               complex->cells[cell->neighbors[k]].label) > 0;
-      }
-    }
-  }
-}
-
-mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
-  double done, mlim_context* context, size_t* count)
-{
-  const size_t blocks = (complex->cell_count + BLOCK - 1) / BLOCK;
-  const stray_job job = {
-    .complex = complex, .boundary = boundary, .counts = mlim_allocate(blocks, sizeof *job.counts)
-  };
-  const mlim_status status = job.counts == NULL
-                               ? mlim_fail_memory(context, "mending the topology")
-                               : mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
-                                                                .body = stray_body,
-                                                                .job = (void*)&job,
-                                                                .stage = MLIM_STAGE_CERTIFICATE,
-                                                                .from = done,
-                                                                .to = done,
-                                                                .step = LOOK_EVERY / BLOCK });
-  *count = 0;
-  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
-  {
-    *count += job.counts[b];
-  }
-  mlim_release(job.counts);
-  return status;
-}
-
 /* ---- stars that are no disks ---- */
 
 static int fails(tidier* t, int32_t vertex)
@@ -459,7 +305,7 @@ static int gather_part(tidier* t, int32_t first, int32_t vertex)
   for (size_t p = 0; p < t->part_count; ++p)
   {
     const mlim_cell* cell = &complex->cells[t->part[p]];
-    if (is_frozen(complex, cell))
+    if (tidy_is_frozen(complex, cell))
     {
       return 0;
     }
@@ -515,9 +361,9 @@ static long cost(tidier* t, long enough)
   for (size_t p = 0; p < t->part_count && sum < enough; ++p)
   {
     const int32_t id = t->part[p];
-    sum += cell_strays(complex, id, complex->cells[id].label);
-    sum += SHAPE_COST * cell_misshapen(t->refinement, id);
-    sum += SIDE_COST * cell_unseen(t->refinement, id);
+    sum += tidy_cell_strays(complex, id, complex->cells[id].label);
+    sum += SHAPE_COST * tidy_cell_misshapen(t->refinement, id);
+    sum += SIDE_COST * tidy_cell_unseen(t->refinement, id);
   }
   for (size_t k = 0; k < t->vertex_count && sum < enough; ++k)
   {
@@ -548,7 +394,7 @@ static size_t mend_part(tidier* t)
   {
     for (int k = 0; k < 4; ++k)
     {
-      const int32_t other = label_beyond(complex, t->part[p], k);
+      const int32_t other = tidy_label_beyond(complex, t->part[p], k);
       if (other != own && !contains(tried, tried_count, other))
       {
         tried[tried_count++] = other;
@@ -601,7 +447,7 @@ static size_t mend_star(tidier* t, int32_t vertex)
   {
     t->part[0] = t->star.cells[c];
     t->part_count = 1;
-    const size_t changed = is_frozen(complex, &complex->cells[t->part[0]]) ? 0 : mend_part(t);
+    const size_t changed = tidy_is_frozen(complex, &complex->cells[t->part[0]]) ? 0 : mend_part(t);
     if (changed > 0)
     {
       return changed;
@@ -669,7 +515,7 @@ static size_t mend_shape(tidier* t, int32_t id)
   {
     const int32_t other = complex->cells[id].neighbors[k];
     if (complex->cells[other].label == complex->cells[id].label &&
-        !is_frozen(complex, &complex->cells[other]))
+        !tidy_is_frozen(complex, &complex->cells[other]))
     {
       t->part[0] = id;
       t->part[1] = other;
@@ -683,8 +529,8 @@ static size_t mend_shape(tidier* t, int32_t id)
 static int is_bad(const tidier* t, int32_t id)
 {
   const mlim_cell* cell = &t->refinement->complex.cells[id];
-  return !is_frozen(&t->refinement->complex, cell) &&
-         (cell_misshapen(t->refinement, id) > 0 || cell_unseen(t->refinement, id) > 0);
+  return !tidy_is_frozen(&t->refinement->complex, cell) &&
+         (tidy_cell_misshapen(t->refinement, id) > 0 || tidy_cell_unseen(t->refinement, id) > 0);
 }
 
 /* Lists the cells with a bad triangle, also those that have to keep their label. */

@@ -1,0 +1,157 @@
+#include "tidy_cell.h"
+
+#include "memory.h"
+#include "sides.h"
+#include "status.h"
+#include "triangle.h"
+
+enum
+{
+  BLOCK = 4096,      /* cells whose strays are counted together */
+  LOOK_EVERY = 65536 /* cells between two looks at the host: some milliseconds */
+};
+
+int tidy_is_frozen(const mlim_complex* complex, const mlim_cell* cell)
+{
+  for (int k = 0; k < 4; ++k)
+  {
+    if (complex->vertices[cell->vertices[k]].kind == MLIM_VERTEX_FAR)
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+int tidy_stray_count(
+  const mlim_complex* complex, const mlim_cell* cell, int index, int32_t label, int32_t other)
+{
+  if (label == other)
+  {
+    return 0;
+  }
+  const mlim_sheet sheet = { .low = label < other ? label : other,
+    .high = label < other ? other : label,
+    .face = mlim_complex_face(complex, (int32_t)(cell - complex->cells), index) };
+  int count = 0;
+  for (int k = 1; k < 4; ++k)
+  {
+    count += !mlim_complex_is_on_sheet(
+      complex, &complex->vertices[cell->vertices[(index + k) & 3]], &sheet);
+  }
+  return count;
+}
+
+int tidy_is_misshapen(const mlim_refinement* r, const mlim_cell* cell, int index)
+{
+  const double* p[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    const mlim_vertex* v = &r->complex.vertices[cell->vertices[(index + 1 + k) & 3]];
+    if (v->kind == MLIM_VERTEX_BALL)
+    {
+      return 0;
+    }
+    p[k] = v->point;
+  }
+  const double bound = r->options->facet_radius_edge_ratio;
+  return mlim_radius_edge_ratio_squared(p[0], p[1], p[2]) > bound * bound;
+}
+
+int tidy_cell_strays(const mlim_complex* complex, int32_t id, int32_t label)
+{
+  const mlim_cell* cell = &complex->cells[id];
+  int count = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    count += tidy_stray_count(complex, cell, k, label, complex->cells[cell->neighbors[k]].label);
+  }
+  return count;
+}
+
+int tidy_cell_misshapen(const mlim_refinement* r, int32_t id)
+{
+  const mlim_cell* cell = &r->complex.cells[id];
+  int count = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t other = r->complex.cells[cell->neighbors[k]].label;
+    count += cell->label != other && tidy_is_misshapen(r, cell, k);
+  }
+  return count;
+}
+
+int tidy_cell_unseen(const mlim_refinement* r, int32_t id)
+{
+  const mlim_complex* complex = &r->complex;
+  const mlim_cell* cell = &complex->cells[id];
+  int count = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t other = complex->cells[cell->neighbors[k]].label;
+    count += cell->label != other &&
+             !mlim_sides_are_seen(complex, id, k, cell->label, other, r->options->facet_distance);
+  }
+  return count;
+}
+
+int32_t tidy_label_beyond(const mlim_complex* complex, int32_t id, int index)
+{
+  const mlim_cell* cell = &complex->cells[id];
+  return mlim_complex_face(complex, id, index) < 0 ? complex->cells[cell->neighbors[index]].label
+                                                   : cell->label;
+}
+
+typedef struct stray_job
+{
+  const mlim_complex* complex;
+  const mlim_boundary* boundary;
+  size_t* counts; /* of each block of cells */
+} stray_job;
+
+static void stray_body(void* data, size_t begin, size_t end)
+{
+  const stray_job* job = (const stray_job*)data;
+  const mlim_complex* complex = job->complex;
+  for (size_t b = begin; b < end; ++b)
+  {
+    const size_t left = complex->cell_count - b * BLOCK;
+    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
+    job->counts[b] = 0;
+    for (size_t c = b * BLOCK; c < last; ++c)
+    {
+      const mlim_cell* cell = &complex->cells[c];
+      const unsigned sides = job->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+      for (int k = 0; sides >> k != 0; ++k)
+      {
+        job->counts[b] += sides >> k & 1u && tidy_stray_count(complex, cell, k, cell->label,
+                                               complex->cells[cell->neighbors[k]].label) > 0;
+      }
+    }
+  }
+}
+
+mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
+  double done, mlim_context* context, size_t* count)
+{
+  const size_t blocks = (complex->cell_count + BLOCK - 1) / BLOCK;
+  const stray_job job = {
+    .complex = complex, .boundary = boundary, .counts = mlim_allocate(blocks, sizeof *job.counts)
+  };
+  const mlim_status status = job.counts == NULL
+                               ? mlim_fail_memory(context, "mending the topology")
+                               : mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
+                                                                .body = stray_body,
+                                                                .job = (void*)&job,
+                                                                .stage = MLIM_STAGE_CERTIFICATE,
+                                                                .from = done,
+                                                                .to = done,
+                                                                .step = LOOK_EVERY / BLOCK });
+  *count = 0;
+  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
+  {
+    *count += job.counts[b];
+  }
+  mlim_release(job.counts);
+  return status;
+}
