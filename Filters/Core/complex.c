@@ -258,7 +258,7 @@ static void empty_zone(mlim_complex* complex)
   }
 }
 
-/* A new cell has no label for now, and the records that the cells outside have. Room in `made` is there. */
+/* A new cell has no label before the next update. Room in `made` is there. */
 static void take_new_cell(mlim_complex* complex, int32_t id)
 {
   mlim_complex_take_cell(complex, id);

@@ -13,7 +13,7 @@ static const double ROUNDING = 1e-9;
 enum
 {
   ITEMS_A_PIECE = 1 << 16, /* between two looks at the host: some milliseconds */
-  BLOCK = 1 << 10          /* vertices whose edges are counted together */
+  BLOCK = 1 << 12          /* vertices whose edges are counted together */
 };
 
 static const double DEGREES = 57.29577951308232; /* in a radian */
@@ -426,51 +426,34 @@ typedef struct open_job
 {
   const mlim_mesh* mesh;
   const mlim_edges* edges;
-  size_t* counts; /* of each block of vertices */
 } open_job;
 
-static void open_body(void* data, size_t begin, size_t end)
+/* Of the edges whose lower vertex is in the range. */
+static size_t count_open(const void* data, size_t begin, size_t end)
 {
   const open_job* job = (const open_job*)data;
-  for (size_t b = begin; b < end; ++b)
+  size_t count = 0;
+  for (size_t v = begin; v < end; ++v)
   {
-    const size_t left = job->mesh->vertex_count - b * BLOCK;
-    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
-    job->counts[b] = 0;
-    for (size_t v = b * BLOCK; v < last; ++v)
+    size_t run_end;
+    for (size_t first = job->edges->offsets[v]; first < job->edges->offsets[v + 1]; first = run_end)
     {
-      size_t run_end;
-      for (size_t first = job->edges->offsets[v]; first < job->edges->offsets[v + 1];
-           first = run_end)
-      {
-        run_end = mlim_edges_run_end(job->edges, (int32_t)v, first);
-        job->counts[b] += (size_t)is_open(job->mesh, job->edges, first, run_end);
-      }
+      run_end = mlim_edges_run_end(job->edges, (int32_t)v, first);
+      count += (size_t)is_open(job->mesh, job->edges, first, run_end);
     }
   }
+  return count;
 }
 
 mlim_status mlim_quality_count_open_edges(
   const mlim_mesh* mesh, const mlim_edges* edges, double done, mlim_context* context, size_t* count)
 {
-  const size_t blocks = (mesh->vertex_count + BLOCK - 1) / BLOCK;
-  open_job job = {
-    .mesh = mesh, .edges = edges, .counts = mlim_allocate(blocks, sizeof *job.counts)
-  };
-  const mlim_status status = job.counts == NULL
-                               ? mlim_fail_memory(context, "the open edges")
-                               : mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
-                                                                .body = open_body,
-                                                                .job = &job,
-                                                                .stage = MLIM_STAGE_CERTIFICATE,
-                                                                .from = done,
-                                                                .to = done,
-                                                                .step = ITEMS_A_PIECE / BLOCK });
-  *count = 0;
-  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
-  {
-    *count += job.counts[b];
-  }
-  mlim_release(job.counts);
-  return status;
+  return mlim_parallel_count(context,
+    &(mlim_counting){ .item_count = mesh->vertex_count,
+      .block = BLOCK,
+      .count = count_open,
+      .job = &(open_job){ .mesh = mesh, .edges = edges },
+      .stage = MLIM_STAGE_CERTIFICATE,
+      .done = done },
+    count);
 }

@@ -35,7 +35,7 @@ typedef struct mlim_queue
 void mlim_queue_start(mlim_queue* queue, const double size[3]);
 void mlim_queue_free(mlim_queue* queue);
 
-/* Gives back the room of a queue that is empty for now. */
+/* Gives back the room of an empty queue; it can be used again. */
 void mlim_queue_shrink(mlim_queue* queue);
 
 /* Bin of a badness; excess = measure / bound, above 1, orders within size, distance and ratio. */

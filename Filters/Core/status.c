@@ -1,5 +1,7 @@
 #include "status.h"
 
+#include "memory.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -133,5 +135,51 @@ mlim_status mlim_parallel_batches(mlim_context* context, const mlim_batches* bat
       &(piece){ .body = b->body, .job = b->job, .first = first });
     status = b->finish(b->job, first, first + count, context);
   }
+  return status;
+}
+
+typedef struct count_job
+{
+  const mlim_counting* counting;
+  size_t* counts; /* of each block */
+} count_job;
+
+static void count_body(void* data, size_t begin, size_t end)
+{
+  const count_job* job = (const count_job*)data;
+  const mlim_counting* c = job->counting;
+  for (size_t b = begin; b < end; ++b)
+  {
+    const size_t first = b * c->block;
+    const size_t last = c->item_count - first < c->block ? c->item_count : first + c->block;
+    job->counts[b] = c->count(c->job, first, last);
+  }
+}
+
+mlim_status mlim_parallel_count(mlim_context* context, const mlim_counting* counting, size_t* out)
+{
+  enum
+  {
+    BLOCKS_A_PIECE = 16
+  };
+  *out = 0;
+  const size_t blocks = (counting->item_count + counting->block - 1) / counting->block;
+  count_job job = { .counting = counting, .counts = mlim_allocate(blocks, sizeof *job.counts) };
+  if (job.counts == NULL)
+  {
+    return mlim_fail_memory(context, "counting");
+  }
+  const mlim_status status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
+                                                            .body = count_body,
+                                                            .job = &job,
+                                                            .stage = counting->stage,
+                                                            .from = counting->done,
+                                                            .to = counting->done,
+                                                            .step = BLOCKS_A_PIECE });
+  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
+  {
+    *out += job.counts[b];
+  }
+  mlim_release(job.counts);
   return status;
 }

@@ -35,6 +35,19 @@ typedef struct mlim_stage_work
 
 mlim_status mlim_parallel_stage(mlim_context* context, const mlim_stage_work* work);
 
+/* Sum of count(job, begin, end) over blocks of `block` of the `item_count` items. `done` is reported as the
+   share of the stage. */
+typedef struct mlim_counting
+{
+  size_t item_count, block;
+  size_t (*count)(const void* job, size_t begin, size_t end);
+  const void* job;
+  mlim_stage stage;
+  double done;
+} mlim_counting;
+
+mlim_status mlim_parallel_count(mlim_context* context, const mlim_counting* counting, size_t* out);
+
 /* What has to be done in order is prepared in parallel: body runs on a batch of at most `size` of the
    `count` items, `finish` then on the same, on this thread, before the next batch. Both count from 0 over
    all. A batch of no more than `few` items is not shared among threads. A finish that fails ends it. */

@@ -1,14 +1,12 @@
 #include "tidy_cell.h"
 
-#include "memory.h"
 #include "sides.h"
 #include "status.h"
 #include "triangle.h"
 
 enum
 {
-  BLOCK = 4096,      /* cells whose strays are counted together */
-  LOOK_EVERY = 65536 /* cells between two looks at the host: some milliseconds */
+  BLOCK = 4096 /* cells whose strays are counted together */
 };
 
 int tidy_is_frozen(const mlim_complex* complex, const mlim_cell* cell)
@@ -106,52 +104,35 @@ typedef struct stray_job
 {
   const mlim_complex* complex;
   const mlim_boundary* boundary;
-  size_t* counts; /* of each block of cells */
 } stray_job;
 
-static void stray_body(void* data, size_t begin, size_t end)
+static size_t count_strays(const void* data, size_t begin, size_t end)
 {
   const stray_job* job = (const stray_job*)data;
   const mlim_complex* complex = job->complex;
-  for (size_t b = begin; b < end; ++b)
+  size_t count = 0;
+  for (size_t c = begin; c < end; ++c)
   {
-    const size_t left = complex->cell_count - b * BLOCK;
-    const size_t last = b * BLOCK + (left < BLOCK ? left : BLOCK);
-    job->counts[b] = 0;
-    for (size_t c = b * BLOCK; c < last; ++c)
+    const mlim_cell* cell = &complex->cells[c];
+    const unsigned sides = job->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    for (int k = 0; sides >> k != 0; ++k)
     {
-      const mlim_cell* cell = &complex->cells[c];
-      const unsigned sides = job->boundary->sides[c] >> MLIM_FIRST_SHIFT;
-      for (int k = 0; sides >> k != 0; ++k)
-      {
-        job->counts[b] += sides >> k & 1u && tidy_stray_count(complex, cell, k, cell->label,
-                                               complex->cells[cell->neighbors[k]].label) > 0;
-      }
+      count += sides >> k & 1u && tidy_stray_count(complex, cell, k, cell->label,
+                                    complex->cells[cell->neighbors[k]].label) > 0;
     }
   }
+  return count;
 }
 
 mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
   double done, mlim_context* context, size_t* count)
 {
-  const size_t blocks = (complex->cell_count + BLOCK - 1) / BLOCK;
-  const stray_job job = {
-    .complex = complex, .boundary = boundary, .counts = mlim_allocate(blocks, sizeof *job.counts)
-  };
-  const mlim_status status = job.counts == NULL
-                               ? mlim_fail_memory(context, "mending the topology")
-                               : mlim_parallel_stage(context, &(mlim_stage_work){ .count = blocks,
-                                                                .body = stray_body,
-                                                                .job = (void*)&job,
-                                                                .stage = MLIM_STAGE_CERTIFICATE,
-                                                                .from = done,
-                                                                .to = done,
-                                                                .step = LOOK_EVERY / BLOCK });
-  *count = 0;
-  for (size_t b = 0; b < blocks && status == MLIM_OK; ++b)
-  {
-    *count += job.counts[b];
-  }
-  mlim_release(job.counts);
-  return status;
+  return mlim_parallel_count(context,
+    &(mlim_counting){ .item_count = complex->cell_count,
+      .block = BLOCK,
+      .count = count_strays,
+      .job = &(stray_job){ .complex = complex, .boundary = boundary },
+      .stage = MLIM_STAGE_CERTIFICATE,
+      .done = done },
+    count);
 }
