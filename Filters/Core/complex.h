@@ -56,7 +56,7 @@ typedef struct mlim_complex
   size_t free_count, free_capacity;
   int32_t* made; /* cells made since the records were brought up to date; dead or twice, some */
   size_t made_count, made_capacity;
-  int32_t* fresh; /* records made the last time */
+  int32_t* fresh; /* records made since the last judgement */
   size_t fresh_count, fresh_capacity;
   int32_t* dirty; /* vertices with is_dirty */
   size_t dirty_count, dirty_capacity;

@@ -4,44 +4,42 @@
 #include "status.h"
 #include "vector.h"
 
-#include <math.h>
-
 enum
 {
-  FACETS = 4,         /* of a cell */
-  MAX_CROSSINGS = 16, /* on one dual; more of them change nothing: it is refined anyway */
-  PIECE = 64,         /* cells that one thread takes at a time */
-  PIECES = 128,       /* between two looks at the host, about 5 ms */
-  FEW = 16            /* pieces that are not worth waking a thread for */
+  FACETS = 4, /* of a cell */
+  PIECE = 64, /* cells that one thread takes at a time */
+  PIECES = MLIM_RECORD_PIECES,
+  FEW = 4 /* pieces that are not worth waking a thread for */
 };
 
-/* What is new about a facet: its record goes if there is one, and another comes if it crosses. */
-typedef struct finding
-{
-  double crossing[3];
-  mlim_sheet sheet;
-  int32_t cell;
-  unsigned char index;
-  unsigned char crosses;
-  unsigned char is_multiple;
-} finding;
-
+/* One call, from the labels of the new cells to the duals that are left to look along. */
 typedef struct update
 {
+  mlim_records* records;
   mlim_complex* complex;
   double done;
-  finding* findings; /* room for all facets of a piece's cells, piece after piece */
-  size_t counts[PIECES];
 } update;
-
-static finding* findings_of(const update* u, size_t piece)
-{
-  return u->findings + (size_t)FACETS * PIECE * (piece % PIECES);
-}
 
 static size_t least(size_t a, size_t b)
 {
   return a < b ? a : b;
+}
+
+static mlim_dual* duals_of(const mlim_records* records, size_t piece)
+{
+  return records->duals + (size_t)FACETS * PIECE * (piece % PIECES);
+}
+
+static int32_t* stale_of(const mlim_records* records, size_t piece)
+{
+  return records->stale + (size_t)FACETS * PIECE * (piece % PIECES);
+}
+
+void mlim_records_free(mlim_records* records)
+{
+  mlim_release(records->duals);
+  mlim_release(records->stale);
+  *records = (mlim_records){ 0 };
 }
 
 /* ---- labels ---- */
@@ -89,81 +87,6 @@ static mlim_status look_at_host(void* data, size_t begin, size_t end, mlim_conte
 
 /* ---- facets ---- */
 
-/* The crossing farthest from the facet: Chew's rule. All its vertices are equally far in power. */
-static size_t farthest(const mlim_crossing* crossing, size_t count, const double vertex[3])
-{
-  size_t best = 0;
-  double most = -1;
-  for (size_t c = 0; c < count; ++c)
-  {
-    const double d = mlim_distance_squared(crossing[c].point, vertex);
-    if (d > most)
-    {
-      most = d;
-      best = c;
-    }
-  }
-  return best;
-}
-
-/* A dual that stays where the field is uniform, as most between cells of one label do: round each end
-   lies a cube of its label, and the two cover it together. */
-static int is_clear(const mlim_complex* complex, int32_t a, int32_t b)
-{
-  const double* inverse = mlim_field_grid_of(complex->oracle.field)->inverse_spacing;
-  const double* start = mlim_complex_center(complex, a);
-  const double* end = mlim_complex_center(complex, b);
-  double longest = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    longest = mlim_max(longest, fabs(start[k] - end[k]) * inverse[k]);
-  }
-  return longest * MLIM_CLEARANCE_PARTS <=
-         complex->cells[a].clearance + complex->cells[b].clearance;
-}
-
-static mlim_sheet sheet_between(int32_t from, int32_t to, int32_t face)
-{
-  const int is_up = from < to;
-  return (mlim_sheet){ .low = is_up ? from : to, .high = is_up ? to : from, .face = face };
-}
-
-static float widen(const mlim_cell* cell)
-{
-  return (float)cell->clearance / MLIM_CLEARANCE_PARTS;
-}
-
-/* Looks along the dual of a facet. */
-static void cross_facet(const mlim_complex* complex, finding* out)
-{
-  const mlim_cell* cell = &complex->cells[out->cell];
-  const int32_t n = cell->neighbors[out->index];
-  const mlim_cell* other = &complex->cells[n];
-  const int differs = cell->label != other->label;
-  out->crosses = 0;
-  if (!differs && is_clear(complex, out->cell, n))
-  {
-    return;
-  }
-  const mlim_segment dual = { .ends = { mlim_complex_center(complex, out->cell),
-                                mlim_complex_center(complex, n) },
-    .labels = { cell->label, other->label },
-    .clearances = { widen(cell), widen(other) } };
-  mlim_crossing crossing[MAX_CROSSINGS];
-  const size_t count =
-    mlim_oracle_crossings_between(&complex->oracle, &dual, MAX_CROSSINGS, crossing);
-  if (count == 0)
-  {
-    return;
-  }
-  const double* near = complex->vertices[cell->vertices[(out->index + 1) & 3]].point;
-  const mlim_crossing* far = &crossing[farthest(crossing, count, near)];
-  mlim_copy(far->point, out->crossing);
-  out->sheet = sheet_between(far->from, far->to, far->face);
-  out->crosses = 1;
-  out->is_multiple = count > 1 || !differs;
-}
-
 /* A single crossing of the sheet between the two labels is on the dual as long as its ends have them. */
 static int matches(const mlim_facet* facet, int32_t a, int32_t b)
 {
@@ -171,59 +94,64 @@ static int matches(const mlim_facet* facet, int32_t a, int32_t b)
          facet->sheet.high == (a < b ? b : a);
 }
 
-/* Whether there is something new about a facet of a new cell. Its dual may be part of one that was looked
-   at before: there was no crossing, or its record says which. */
-static int look_at_facet(const mlim_complex* complex, int32_t id, int index, finding* out)
+/* How many duals and records a piece's cells have given so far. */
+typedef struct finds
+{
+  mlim_dual* duals;
+  int32_t* stale;
+  size_t dual_count, stale_count;
+} finds;
+
+/* A facet of a new cell. Its dual may be part of one that was looked at before: there was no crossing, or its
+   record says which. */
+static void look_at_facet(const mlim_complex* complex, int32_t id, int index, finds* out)
 {
   const mlim_cell* cell = &complex->cells[id];
   const int32_t n = cell->neighbors[index];
   if (n == MLIM_NO_CELL)
   {
-    return 0;
+    return;
   }
   const mlim_cell* other = &complex->cells[n];
   const int is_new = other->mark == complex->stamp;
   if (is_new && n < id)
   {
-    return 0;
+    return;
   }
-  *out = (finding){ .cell = id, .index = (unsigned char)index };
   const int32_t record = cell->facets[index];
   const int differs = cell->label != other->label;
-  if (record == 0)
+  int is_open = differs || (is_new && !mlim_dual_is_clear(complex, id, n));
+  if (record > 0)
   {
-    if (is_new || differs)
+    const mlim_facet* facet = &complex->facets[record];
+    if (matches(facet, cell->label, other->label))
     {
-      cross_facet(complex, out);
+      return;
     }
-    return out->crosses;
+    out->stale[out->stale_count++] = record;
+    is_open = differs || (facet->is_multiple && !mlim_dual_is_clear(complex, id, n));
   }
-  const mlim_facet* facet = &complex->facets[record];
-  if (matches(facet, cell->label, other->label))
+  if (is_open)
   {
-    return 0;
+    mlim_dual_copy(complex, id, index, &out->duals[out->dual_count++]);
   }
-  if (facet->is_multiple || differs)
-  {
-    cross_facet(complex, out);
-  }
-  return 1;
 }
 
 static void look_at_piece(update* u, size_t piece)
 {
-  const mlim_complex* complex = u->complex;
+  mlim_records* records = u->records;
   const size_t begin = piece * PIECE;
   const size_t end = least(begin + PIECE, u->complex->made_count);
-  finding* out = findings_of(u, piece);
+  finds out = { .duals = duals_of(records, piece), .stale = stale_of(records, piece) };
   for (size_t k = begin; k < end; ++k)
   {
     for (int i = 0; i < FACETS; ++i)
     {
-      out += look_at_facet(complex, complex->made[k], i, out);
+      look_at_facet(u->complex, u->complex->made[k], i, &out);
     }
   }
-  u->counts[piece % PIECES] = (size_t)(out - findings_of(u, piece));
+  records->dual_counts[piece % PIECES] = (uint16_t)out.dual_count;
+  records->stale_counts[piece % PIECES] = (uint16_t)out.stale_count;
 }
 
 static void look_body(void* data, size_t begin, size_t end)
@@ -254,57 +182,92 @@ static int32_t new_record(mlim_complex* complex)
   return (int32_t)complex->facet_count++;
 }
 
-/* Returns 1 when out of memory. */
-static int apply(mlim_complex* complex, const finding* found)
+/* A record goes; what its facet has instead is not known yet. */
+static void drop_record(mlim_complex* complex, int32_t record)
 {
-  mlim_cell* cell = &complex->cells[found->cell];
-  mlim_cell* other = &complex->cells[cell->neighbors[found->index]];
-  const int32_t old = cell->facets[found->index];
-  int32_t record = 0;
-  if (old != 0)
+  const mlim_facet* facet = &complex->facets[record];
+  mlim_cell* cell = &complex->cells[facet->cell];
+  mlim_cell* other = &complex->cells[cell->neighbors[facet->index]];
+  mlim_complex_touch_facet(complex, facet->cell, facet->index);
+  cell->facets[facet->index] = 0;
+  other->facets[mlim_complex_index_apart(other, cell)] = 0;
+  mlim_complex_kill_record(complex, record);
+}
+
+/* The side of a dual whose cell is still the one that it was, -1: neither. What was made since has no label. */
+static int living_side(const mlim_complex* complex, const mlim_dual* dual)
+{
+  for (int side = 0; side < 2; ++side)
   {
-    mlim_complex_kill_record(complex, old);
-  }
-  if (found->crosses)
-  {
-    record = new_record(complex);
-    if (record == 0 || mlim_reserve_apart(&complex->fresh, &complex->fresh_capacity,
-                         complex->fresh_count + 1, sizeof *complex->fresh))
+    const mlim_cell* cell = &complex->cells[dual->cells[side]];
+    if (cell->vertices[0] >= 0 && cell->label != MLIM_NO_LABEL)
     {
-      return 1;
+      return side;
     }
-    mlim_facet* facet = &complex->facets[record];
-    const uint32_t generation = facet->generation;
-    *facet = (mlim_facet){ .sheet = found->sheet,
-      .cell = found->cell,
-      .generation = generation,
-      .index = found->index,
-      .is_alive = 1,
-      .is_multiple = found->is_multiple };
-    mlim_copy(found->crossing, facet->crossing);
-    complex->fresh[complex->fresh_count++] = record;
   }
-  cell->facets[found->index] = record;
+  return -1;
+}
+
+/* The dual may have become shorter at one end since it was copied: the record passes on. Returns 1 when out of
+   memory. */
+static int add_record(mlim_complex* complex, const mlim_dual* dual)
+{
+  const int side = living_side(complex, dual);
+  if (side < 0)
+  {
+    return 0;
+  }
+  const int32_t record = new_record(complex);
+  if (record == 0 || mlim_reserve_apart(&complex->fresh, &complex->fresh_capacity,
+                       complex->fresh_count + 1, sizeof *complex->fresh))
+  {
+    return 1;
+  }
+  mlim_facet* facet = &complex->facets[record];
+  const uint32_t generation = facet->generation;
+  *facet = (mlim_facet){ .sheet = dual->sheet,
+    .cell = dual->cells[side],
+    .generation = generation,
+    .index = dual->indices[side] & 3,
+    .is_alive = 1,
+    .is_multiple = dual->is_multiple & 1 };
+  mlim_copy(dual->crossing, facet->crossing);
+  complex->fresh[complex->fresh_count++] = record;
+  mlim_cell* cell = &complex->cells[facet->cell];
+  mlim_cell* other = &complex->cells[cell->neighbors[facet->index]];
+  cell->facets[facet->index] = record;
   other->facets[mlim_complex_index_apart(other, cell)] = record;
-  mlim_complex_touch_facet(complex, found->cell, found->index);
+  mlim_complex_touch_facet(complex, facet->cell, facet->index);
   return 0;
 }
 
-static mlim_status apply_all(void* data, size_t begin, size_t end, mlim_context* context)
+void mlim_records_cross(mlim_records* records, const mlim_oracle* oracle, size_t part, size_t parts)
 {
-  const update* u = (const update*)data;
-  for (size_t piece = begin; piece < end; ++piece)
+  for (size_t piece = part; piece < records->piece_count; piece += parts)
   {
-    const finding* findings = findings_of(u, piece);
-    for (size_t k = 0; k < u->counts[piece % PIECES]; ++k)
+    mlim_dual* duals = duals_of(records, piece);
+    for (size_t k = 0; k < records->dual_counts[piece]; ++k)
     {
-      if (apply(u->complex, &findings[k]))
-      {
-        return mlim_fail_memory(context, "the restricted facets");
-      }
+      mlim_dual_cross(oracle, &duals[k]);
     }
   }
-  return mlim_progress(context, MLIM_STAGE_SURFACE, u->done);
+}
+
+mlim_status mlim_records_end(
+  mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
+{
+  int has_failed = 0;
+  for (size_t piece = 0; piece < records->piece_count && !has_failed; ++piece)
+  {
+    const mlim_dual* duals = duals_of(records, piece);
+    for (size_t k = 0; k < records->dual_counts[piece] && !has_failed; ++k)
+    {
+      has_failed = duals[k].crosses && add_record(complex, &duals[k]);
+    }
+  }
+  records->piece_count = 0;
+  return has_failed ? mlim_fail_memory(context, "the restricted facets")
+                    : mlim_progress(context, MLIM_STAGE_SURFACE, done);
 }
 
 /* ---- the whole ---- */
@@ -327,6 +290,57 @@ static void keep_living(mlim_complex* complex)
   complex->made_count = kept;
 }
 
+static int reserve(mlim_records* records, size_t cells)
+{
+  const size_t room = FACETS * PIECE * least(PIECES, (cells + PIECE - 1) / PIECE);
+  return mlim_reserve(&records->duals, &records->dual_capacity, room, sizeof *records->duals) ||
+         mlim_reserve(&records->stale, &records->stale_capacity, room, sizeof *records->stale);
+}
+
+typedef struct crossing_job
+{
+  mlim_records* records;
+  const mlim_oracle* oracle;
+} crossing_job;
+
+static void cross_body(void* data, size_t begin, size_t end)
+{
+  const crossing_job* job = (const crossing_job*)data;
+  for (size_t piece = begin; piece < end; ++piece)
+  {
+    mlim_records_cross(job->records, job->oracle, piece, PIECES);
+  }
+}
+
+mlim_status mlim_records_finish(
+  mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
+{
+  if (records->piece_count == 0)
+  {
+    return MLIM_OK;
+  }
+  mlim_parallel_for(records->piece_count > FEW ? context : NULL, records->piece_count, cross_body,
+    &(crossing_job){ .records = records, .oracle = &complex->oracle });
+  return mlim_records_end(records, complex, done, context);
+}
+
+/* The pieces that were looked at last are left to be looked along; those before them are done. */
+static mlim_status take_looks(void* data, size_t begin, size_t end, mlim_context* context)
+{
+  const update* u = (const update*)data;
+  for (size_t piece = begin; piece < end; ++piece)
+  {
+    const int32_t* stale = stale_of(u->records, piece);
+    for (size_t k = 0; k < u->records->stale_counts[piece % PIECES]; ++k)
+    {
+      drop_record(u->complex, stale[k]);
+    }
+  }
+  u->records->piece_count = end - begin;
+  const size_t all = (u->complex->made_count + PIECE - 1) / PIECE;
+  return end == all ? MLIM_OK : mlim_records_finish(u->records, u->complex, u->done, context);
+}
+
 static mlim_status run(update* u, mlim_body body,
   mlim_status (*finish)(void*, size_t, size_t, mlim_context*), mlim_context* context)
 {
@@ -339,20 +353,25 @@ static mlim_status run(update* u, mlim_body body,
                .job = u });
 }
 
-mlim_status mlim_records_update(mlim_complex* complex, double done, mlim_context* context)
+mlim_status mlim_records_begin(
+  mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
 {
-  complex->fresh_count = 0;
   keep_living(complex);
-  const size_t room = least(PIECES * PIECE, complex->made_count + PIECE);
-  update u = {
-    .complex = complex, .done = done, .findings = mlim_allocate(FACETS * room, sizeof(finding))
-  };
-  mlim_status status = u.findings == NULL ? mlim_fail_memory(context, "the restricted facets")
-                                          : run(&u, label_body, look_at_host, context);
-  status = status == MLIM_OK ? run(&u, look_body, apply_all, context) : status;
-  mlim_release(u.findings);
+  update u = { .records = records, .complex = complex, .done = done };
+  mlim_status status = reserve(records, complex->made_count)
+                         ? mlim_fail_memory(context, "the restricted facets")
+                         : run(&u, label_body, look_at_host, context);
+  status = status == MLIM_OK ? run(&u, look_body, take_looks, context) : status;
   complex->made_count = 0;
   return status;
+}
+
+mlim_status mlim_records_update(
+  mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
+{
+  mlim_status status = mlim_records_finish(records, complex, done, context);
+  status = status == MLIM_OK ? mlim_records_begin(records, complex, done, context) : status;
+  return status == MLIM_OK ? mlim_records_finish(records, complex, done, context) : status;
 }
 
 int mlim_records_hold(const mlim_complex* complex, const mlim_facet* facet)

@@ -1,8 +1,7 @@
 #include "refine.h"
 
 #include "memory.h"
-#include "partner.h"
-#include "records.h"
+#include "refine_batch.h"
 #include "refine_disks.h"
 #include "refine_judge.h"
 #include "status.h"
@@ -14,8 +13,7 @@
 
 enum
 {
-  LOOK_EVERY_BALLS = 256, /* balls inserted between two looks at the host: about 5 ms */
-  UPDATE_EVERY = 8192     /* cells made between two updates: they are still in the cache then */
+  LOOK_EVERY_BALLS = 256 /* balls inserted between two looks at the host: about 5 ms */
 };
 
 /* ---- start ---- */
@@ -138,6 +136,7 @@ void mlim_refine_free(mlim_refinement* refinement)
   mlim_ball_links_free(&refinement->links);
   mlim_queue_free(&refinement->queue);
   mlim_star_free(&refinement->star);
+  mlim_records_free(&refinement->records);
 }
 
 /* ---- the loop ---- */
@@ -154,51 +153,10 @@ mlim_status mlim_refine_ask(
            : MLIM_OK;
 }
 
-/* The partners of a vertex that was inserted just now. */
-static mlim_status insert_partners(
-  mlim_refinement* r, const mlim_partners* partners, mlim_context* context)
-{
-  const int32_t vertex = (int32_t)r->complex.vertex_count - 1;
-  mlim_status status = MLIM_OK;
-  for (size_t k = 0; k < partners->count && status == MLIM_OK; ++k)
-  {
-    int is_there;
-    status = mlim_partner_insert(
-      &r->complex, r->options, &partners->vertices[k], vertex, context, &is_there);
-    r->insertion_count += (size_t)is_there;
-  }
-  return status;
-}
-
-static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_context* context)
-{
-  mlim_complex* complex = &r->complex;
-  const mlim_facet* facet = &complex->facets[record];
-  mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = facet->sheet };
-  mlim_copy(facet->crossing, vertex.point);
-  const int32_t sides[2] = { facet->cell, complex->cells[facet->cell].neighbors[facet->index] };
-  int is_found = 0;
-  mlim_status status = MLIM_OK;
-  /* The crossing lies on the dual, between the two power centres: both cells are in conflict but
-     for rounding. That no vertex is too near was seen before the facet was queued. */
-  for (int k = 0; k < 2 && status == MLIM_OK && !is_found; ++k)
-  {
-    status =
-      mlim_complex_probe(complex, &vertex, sides[k], MLIM_START_IN_CONFLICT, context, &is_found);
-  }
-  mlim_partners partners;
-  if (!is_found || !mlim_partners_find(complex, r->options, &vertex, &partners))
-  {
-    return status;
-  }
-  status = mlim_complex_commit(complex, context);
-  r->insertion_count += status == MLIM_OK;
-  return status == MLIM_OK ? insert_partners(r, &partners, context) : status;
-}
-
 mlim_status mlim_refine_update(mlim_refinement* refinement, mlim_context* context)
 {
-  return mlim_records_update(&refinement->complex, refinement->progress, context);
+  return mlim_records_update(
+    &refinement->records, &refinement->complex, refinement->progress, context);
 }
 
 mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* context)
@@ -208,36 +166,6 @@ mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* contex
   const double fraction = 1 - exp(-1.5 * share);
   r->progress = fraction > r->progress ? fraction : r->progress;
   return mlim_progress(context, MLIM_STAGE_SURFACE, r->progress);
-}
-
-static mlim_status update_and_judge(mlim_refinement* r, mlim_context* context)
-{
-  mlim_status status = mlim_refine_update(r, context);
-  status = status == MLIM_OK ? mlim_judge_fresh(r, context) : status;
-  return status == MLIM_OK ? mlim_refine_report(r, context) : status;
-}
-
-static mlim_status work_batch(mlim_refinement* r, mlim_badness badness, mlim_context* context)
-{
-  mlim_status status = MLIM_OK;
-  for (size_t k = 0; k < r->queue.batch.count && status == MLIM_OK; ++k)
-  {
-    const mlim_queue_entry entry = r->queue.batch.entries[k];
-    const mlim_facet* facet = &r->complex.facets[entry.record];
-    if (!facet->is_alive || facet->generation != entry.generation ||
-        !mlim_records_hold(&r->complex, facet) ||
-        (badness == MLIM_BAD_DISK &&
-          !mlim_criteria_may_insert(&r->complex, r->options, facet, badness)))
-    {
-      continue;
-    }
-    status = insert_crossing(r, entry.record, context);
-    if (status == MLIM_OK && r->complex.made_count >= UPDATE_EVERY)
-    {
-      status = update_and_judge(r, context);
-    }
-  }
-  return status == MLIM_OK ? update_and_judge(r, context) : status;
 }
 
 /* Another goal judges other things. */
@@ -262,7 +190,7 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
     const int bin = mlim_queue_next(&r->queue);
     if (bin >= 0)
     {
-      status = work_batch(r, mlim_queue_badness_of(bin), context);
+      status = mlim_batch_work(r, mlim_queue_badness_of(bin), context);
     }
     else if (r->complex.dirty_count > 0)
     {

@@ -6,6 +6,7 @@
 #include "disk.h"
 #include "known.h"
 #include "queue.h"
+#include "records.h"
 
 typedef enum mlim_goal
 {
@@ -16,6 +17,7 @@ typedef enum mlim_goal
 typedef struct mlim_refinement
 {
   mlim_complex complex;
+  mlim_records records; /* on their way within a batch */
   mlim_ball_links links;
   mlim_queue queue;
   mlim_star star;

@@ -77,11 +77,14 @@ static mlim_status judge(
 
 mlim_status mlim_judge_fresh(mlim_refinement* refinement, mlim_context* context)
 {
-  const mlim_complex* complex = &refinement->complex;
-  return judge(refinement, complex->fresh, complex->fresh_count, context);
+  mlim_complex* complex = &refinement->complex;
+  const mlim_status status = judge(refinement, complex->fresh, complex->fresh_count, context);
+  complex->fresh_count = 0;
+  return status;
 }
 
 mlim_status mlim_judge_all(mlim_refinement* refinement, mlim_context* context)
 {
+  refinement->complex.fresh_count = 0;
   return judge(refinement, NULL, refinement->complex.facet_count - 1, context);
 }

@@ -1,8 +1,8 @@
 /* Time and memory of each stage, on scenes that are made here and on real images.
 
-     bench [--quick] [--data FOLDER] [--runs N] [--write FILE] [NAME ...]
+     bench [--quick] [--data FOLDER] [--runs N] [--threads N] [--write FILE] [NAME ...]
 
-   --quick: one run unless said otherwise. Without names all cases. Real images are looked for in the
+   --quick: one run unless said otherwise. --threads: that many of VTK's; else the core runs serially. Without names all cases. Real images are looked for in the
    folder, else in the one that the environment variable MLIM_DATA names; without a folder they are
    left out. */
 #include "record.h"
@@ -14,7 +14,8 @@
 enum
 {
   DEFAULT_RUNS = 3,
-  MAX_RUNS = 1000
+  MAX_RUNS = 1000,
+  MAX_THREADS = 1024
 };
 
 typedef struct arguments
@@ -22,6 +23,7 @@ typedef struct arguments
   const char* folder; /* NULL: scenes only */
   const char* file;   /* NULL: nothing to write */
   int run_count;
+  int thread_count; /* 0: no host's parallel-for */
   char** names;
   int name_count; /* 0: all */
 } arguments;
@@ -51,6 +53,10 @@ static int parse(int argc, char** argv, arguments* out)
     {
       out->run_count = atoi(argv[i + 1]);
     }
+    else if (strcmp(argv[i], "--threads") == 0)
+    {
+      out->thread_count = atoi(argv[i + 1]);
+    }
     else
     {
       return 1;
@@ -59,8 +65,8 @@ static int parse(int argc, char** argv, arguments* out)
   out->names = argv + i;
   out->name_count = argc - i;
   out->folder = out->folder != NULL && out->folder[0] == '\0' ? NULL : out->folder;
-  return out->run_count < 1 || out->run_count > MAX_RUNS ||
-         (i < argc && strncmp(argv[i], "--", 2) == 0);
+  return out->run_count < 1 || out->run_count > MAX_RUNS || out->thread_count < 0 ||
+         out->thread_count > MAX_THREADS || (i < argc && strncmp(argv[i], "--", 2) == 0);
 }
 
 static int is_wanted(const bench_case* one, const arguments* given)
@@ -108,7 +114,8 @@ static int measure_all(const arguments* given, bench_result* results, size_t cou
       {
         bench_figures figures;
         const bench_demand demand = { .one = results[r].one,
-          .facet_size = results[r].one->facet_size };
+          .facet_size = results[r].one->facet_size,
+          .thread_count = given->thread_count };
         bench_measure(&demand, given->folder, &figures);
         bench_result_add(&results[r], &figures);
         fprintf(stderr, "run %d of %d: %s, %zu vertices, %.2f s%s%s\n", round + 1, given->run_count,
@@ -126,6 +133,10 @@ static void describe(const arguments* given, char* out, size_t size)
 {
   int length = snprintf(out, size, "bench%s --runs %d",
     given->folder == NULL ? "" : " --data $MLIM_DATA", given->run_count);
+  if (given->thread_count > 0 && length >= 0 && (size_t)length < size)
+  {
+    length += snprintf(out + length, size - (size_t)length, " --threads %d", given->thread_count);
+  }
   for (int i = 0; i < given->name_count && length >= 0 && (size_t)length < size; ++i)
   {
     length += snprintf(out + length, size - (size_t)length, " %s", given->names[i]);
@@ -144,7 +155,7 @@ static int publish(const arguments* given, const bench_result* results, size_t c
     return 1;
   }
   describe(given, command, sizeof command);
-  bench_record_write(results, count, command, memory);
+  bench_record_write(results, count, command, given->thread_count, memory);
   fclose(memory);
   fputs(text, stdout);
   const int has_failed = given->file != NULL && bench_report_replace(given->file, "figures", text);
@@ -157,7 +168,8 @@ int main(int argc, char** argv)
   arguments given;
   if (parse(argc, argv, &given))
   {
-    fprintf(stderr, "usage: %s [--quick] [--data FOLDER] [--runs N] [--write FILE] [NAME ...]\n",
+    fprintf(stderr,
+      "usage: %s [--quick] [--data FOLDER] [--runs N] [--threads N] [--write FILE] [NAME ...]\n",
       argv[0]);
     return 2;
   }

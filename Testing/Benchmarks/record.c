@@ -154,13 +154,14 @@ static void write_remarks(const bench_result* results, size_t count, FILE* out)
   }
 }
 
-void bench_record_write(const bench_result* results, size_t count, const char* command, FILE* out)
+void bench_record_write(
+  const bench_result* results, size_t count, const char* command, int thread_count, FILE* out)
 {
   static const char* const stages[] = { "case", "facet size", "vertices", "triangles", "field",
     "curves", "balls", "refinement", "mesh, certificate", "total", "wall clock", NULL };
   static const char* const refinement[] = { "case", "facet size", "vertices", "balls", "insertions",
     "µs a vertex", "bulk s", "ratio to bulk", "image MB", "peak MB", "KB a vertex", NULL };
-  bench_report_machine(command, 1, out);
+  bench_report_machine(command, thread_count, out);
   write_table("Seconds of each stage:", stages, add_stage_row, results, count, out);
   write_table("Refinement against bulk insertion, and memory:", refinement, add_refinement_row,
     results, count, out);

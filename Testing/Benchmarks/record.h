@@ -22,7 +22,8 @@ typedef struct bench_result
 void bench_result_add(bench_result* result, const bench_figures* figures);
 
 /* Machine, versions, date and command, then the tables in Markdown. */
-void bench_record_write(const bench_result* results, size_t count, const char* command, FILE* out);
+void bench_record_write(
+  const bench_result* results, size_t count, const char* command, int thread_count, FILE* out);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,140 @@
+#include "refine_batch.h"
+
+#include "partner.h"
+#include "refine_judge.h"
+#include "status.h"
+#include "vector.h"
+
+enum
+{
+  UPDATE_EVERY = 2048, /* cells made between two updates: they are still in the cache then */
+  PARTS = 7, /* of the duals to look along; with the insertions as many as hosts hand out singly */
+  FEW = 4    /* pieces of duals that are not worth waking a thread for */
+};
+
+/* The partners of a vertex that was inserted just now. */
+static mlim_status insert_partners(
+  mlim_refinement* r, const mlim_partners* partners, mlim_context* context)
+{
+  const int32_t vertex = (int32_t)r->complex.vertex_count - 1;
+  mlim_status status = MLIM_OK;
+  for (size_t k = 0; k < partners->count && status == MLIM_OK; ++k)
+  {
+    int is_there;
+    status = mlim_partner_insert(
+      &r->complex, r->options, &partners->vertices[k], vertex, context, &is_there);
+    r->insertion_count += (size_t)is_there;
+  }
+  return status;
+}
+
+static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_context* context)
+{
+  mlim_complex* complex = &r->complex;
+  const mlim_facet* facet = &complex->facets[record];
+  mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = facet->sheet };
+  mlim_copy(facet->crossing, vertex.point);
+  const int32_t sides[2] = { facet->cell, complex->cells[facet->cell].neighbors[facet->index] };
+  int is_found = 0;
+  mlim_status status = MLIM_OK;
+  /* The crossing lies on the dual, between the two power centres: both cells are in conflict but
+     for rounding. That no vertex is too near was seen before the facet was queued. */
+  for (int k = 0; k < 2 && status == MLIM_OK && !is_found; ++k)
+  {
+    status =
+      mlim_complex_probe(complex, &vertex, sides[k], MLIM_START_IN_CONFLICT, context, &is_found);
+  }
+  mlim_partners partners;
+  if (!is_found || !mlim_partners_find(complex, r->options, &vertex, &partners))
+  {
+    return status;
+  }
+  status = mlim_complex_commit(complex, context);
+  r->insertion_count += status == MLIM_OK;
+  return status == MLIM_OK ? insert_partners(r, &partners, context) : status;
+}
+
+/* Insertions and, beside them, the duals that those before have left. */
+typedef struct turn
+{
+  mlim_refinement* refinement;
+  mlim_badness badness;
+  size_t next; /* entry of the batch */
+  mlim_context* context;
+  mlim_status status;
+} turn;
+
+static int is_due(const mlim_refinement* r, const mlim_queue_entry* entry, mlim_badness badness)
+{
+  const mlim_facet* facet = &r->complex.facets[entry->record];
+  return facet->is_alive && facet->generation == entry->generation &&
+         mlim_records_hold(&r->complex, facet) &&
+         (badness != MLIM_BAD_DISK ||
+           mlim_criteria_may_insert(&r->complex, r->options, facet, badness));
+}
+
+static void insert_some(turn* t)
+{
+  mlim_refinement* r = t->refinement;
+  for (; t->next < r->queue.batch.count && t->status == MLIM_OK &&
+         r->complex.made_count < UPDATE_EVERY;
+       ++t->next)
+  {
+    const mlim_queue_entry entry = r->queue.batch.entries[t->next];
+    if (is_due(r, &entry, t->badness))
+    {
+      t->status = insert_crossing(r, entry.record, t->context);
+    }
+  }
+}
+
+/* Item 0 inserts, the others look along duals: they touch nothing in common. */
+static void turn_body(void* data, size_t begin, size_t end)
+{
+  turn* t = (turn*)data;
+  for (size_t item = begin; item < end; ++item)
+  {
+    if (item == 0)
+    {
+      insert_some(t);
+    }
+    else
+    {
+      mlim_records_cross(&t->refinement->records, &t->refinement->complex.oracle, item - 1, PARTS);
+    }
+  }
+}
+
+static mlim_status take_turn(turn* t)
+{
+  mlim_refinement* r = t->refinement;
+  const int is_shared = r->records.piece_count > FEW;
+  mlim_parallel_for(is_shared ? t->context : NULL, 1 + PARTS, turn_body, t);
+  const mlim_status status = mlim_records_end(&r->records, &r->complex, r->progress, t->context);
+  return t->status == MLIM_OK ? status : t->status;
+}
+
+static mlim_status judge(mlim_refinement* r, mlim_context* context)
+{
+  const mlim_status status = mlim_judge_fresh(r, context);
+  return status == MLIM_OK ? mlim_refine_report(r, context) : status;
+}
+
+mlim_status mlim_batch_work(
+  mlim_refinement* refinement, mlim_badness badness, mlim_context* context)
+{
+  mlim_refinement* r = refinement;
+  turn t = { .refinement = r, .badness = badness, .context = context };
+  mlim_status status = MLIM_OK;
+  while (t.next < r->queue.batch.count && status == MLIM_OK)
+  {
+    status = take_turn(&t);
+    /* Facets are judged once all cells have labels. */
+    status = status == MLIM_OK ? mlim_records_begin(&r->records, &r->complex, r->progress, context)
+                               : status;
+    status = status == MLIM_OK ? judge(r, context) : status;
+  }
+  status = status == MLIM_OK ? mlim_records_finish(&r->records, &r->complex, r->progress, context)
+                             : status;
+  return status == MLIM_OK ? judge(r, context) : status;
+}
