@@ -94,6 +94,57 @@ static mlim_status chamfer(
   return status;
 }
 
+typedef struct bricking
+{
+  const mlim_field* field;
+  uint8_t* out;
+} bricking;
+
+/* Layers of bricks. What a brick has beyond the cells is never asked for. */
+static void brick_body(void* data, size_t begin, size_t end)
+{
+  const bricking* job = (const bricking*)data;
+  const mlim_field* field = job->field;
+  const int32_t* cells = field->grid.cells;
+  const int32_t last = (int32_t)end * BRICK < cells[2] ? (int32_t)end * BRICK : cells[2];
+  for (int32_t z = (int32_t)begin * BRICK; z < last; ++z)
+  {
+    for (int32_t y = 0; y < cells[1]; ++y)
+    {
+      const uint8_t* row =
+        field->clearances + (size_t)cells[0] * ((size_t)z * (size_t)cells[1] + (size_t)y);
+      const int32_t start[3] = { 0, y, z };
+      uint8_t* out = job->out + BRICK_CELLS * field_brick_of(field, start) + field_slot_of(start);
+      for (int32_t x = 0; x < cells[0]; ++x)
+      {
+        out[BRICK_CELLS * (size_t)(x >> 2) + (size_t)(x & 3)] = row[x];
+      }
+    }
+  }
+}
+
+/* Brick after brick, as they are asked for. */
+static mlim_status order(mlim_field* field, mlim_context* context)
+{
+  const size_t count =
+    (size_t)field->bricks[0] * (size_t)field->bricks[1] * (size_t)field->bricks[2];
+  bricking job = { .field = field, .out = mlim_allocate(count, BRICK_CELLS) };
+  if (job.out == NULL)
+  {
+    return mlim_fail_memory(context, "the field's index");
+  }
+  const mlim_status status =
+    mlim_parallel_stage(context, &(mlim_stage_work){ .count = (size_t)field->bricks[2],
+                                   .body = brick_body,
+                                   .job = &job,
+                                   .stage = MLIM_STAGE_FIELD,
+                                   .from = PROGRESS,
+                                   .to = PROGRESS });
+  mlim_release(field->clearances);
+  field->clearances = job.out;
+  return status;
+}
+
 mlim_status mlim_clearance_measure(mlim_field* field, mlim_context* context)
 {
   uint8_t* least = mlim_allocate((size_t)field->grid.cells[0] + 2, 1);
@@ -101,5 +152,5 @@ mlim_status mlim_clearance_measure(mlim_field* field, mlim_context* context)
                                ? chamfer(field->clearances, field->grid.cells, least, context)
                                : mlim_fail_memory(context, "the field's index");
   mlim_release(least);
-  return status;
+  return status == MLIM_OK ? order(field, context) : status;
 }

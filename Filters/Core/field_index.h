@@ -45,38 +45,41 @@ struct mlim_field
   uint32_t*
     coarse; /* a brick: label | least clearance of its cells << 16, or MIXED | brick in its layer */
   uint8_t*
-    clearances; /* a cell: in cells, how far it is to a mixed one along the farthest axis; 0 if it is */
+    clearances; /* a cell, brick after brick: in cells, how far it is to a mixed one along the farthest
+                          axis; 0 if it is. What a walk needs of one brick is in one line of the cache */
   field_layer* layers;
   size_t layer_count;
   size_t max_candidates;
 };
 
+/* The brick that holds a cell. */
+static inline size_t field_brick_of(const mlim_field* field, const int32_t cell[3])
+{
+  const int32_t* bricks = field->bricks;
+  return (size_t)(cell[0] >> 2) +
+         (size_t)bricks[0] * ((size_t)(cell[1] >> 2) + (size_t)bricks[1] * (size_t)(cell[2] >> 2));
+}
+
+/* A cell's place in its brick. */
+static inline size_t field_slot_of(const int32_t cell[3])
+{
+  return (size_t)(cell[0] & 3) | (size_t)(cell[1] & 3) << 2 | (size_t)(cell[2] & 3) << 4;
+}
+
 /* All cells within so many in each direction, less one, are uniform with the label of this one or outside the
    box. 0 when it is mixed. */
 static inline int field_clearance(const mlim_field* field, const int32_t cell[3])
 {
-  const int32_t* cells = field->grid.cells;
-  return field
-    ->clearances[(size_t)cell[0] +
-                 (size_t)cells[0] * ((size_t)cell[1] + (size_t)cells[1] * (size_t)cell[2])];
+  return field->clearances[BRICK_CELLS * field_brick_of(field, cell) + field_slot_of(cell)];
 }
 
 /* Word of a cell: its label when it is uniform. */
 static inline uint32_t field_cell_word(const mlim_field* field, const int32_t cell[3])
 {
-  const int32_t bx = cell[0] >> 2;
-  const int32_t by = cell[1] >> 2;
-  const int32_t bz = cell[2] >> 2;
-  const uint32_t word =
-    field->coarse[(size_t)bx +
-                  (size_t)field->bricks[0] * ((size_t)by + (size_t)field->bricks[1] * (size_t)bz)];
-  if (!(word & (uint32_t)MIXED))
-  {
-    return word;
-  }
-  const size_t slot =
-    (size_t)(cell[0] & 3) | (size_t)(cell[1] & 3) << 2 | (size_t)(cell[2] & 3) << 4;
-  return field->layers[bz].words[(word & DETAIL) * BRICK_CELLS + slot];
+  const uint32_t word = field->coarse[field_brick_of(field, cell)];
+  return word & (uint32_t)MIXED
+           ? field->layers[cell[2] >> 2].words[(word & DETAIL) * BRICK_CELLS + field_slot_of(cell)]
+           : word;
 }
 
 /* The pool entry of a mixed cell. */
