@@ -1,11 +1,11 @@
 #include "tidy.h"
 
-#include "ahead.h"
 #include "memory.h"
 #include "refine_disks.h"
-#include "sides.h"
 #include "status.h"
 #include "tidy_cell.h"
+#include "tidy_disks.h"
+#include "tidy_looks.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -17,28 +17,18 @@ enum
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
   SHAPE_SWEEPS = 3,
-  LOOK_EVERY = 65536, /* cells between two looks at the host: some milliseconds */
-  MAX_STEPS = 256     /* vertices that one failed vertex may lead to */
-};
-
-/* ---- all facets between two labels at a time ---- */
-
-enum
-{
-  STRAYS = 15,  /* bit k: facet k has a vertex that is not on its sheet */
-  BAD_SHIFT = 4 /* bit 4 + k: its triangle is misshapen, or off its interface */
+  MAX_STEPS = 256 /* vertices that one failed vertex may lead to */
 };
 
 typedef struct tidier
 {
   mlim_refinement* refinement;
-  mlim_boundary* boundary;
   mlim_context* context;
-  double done;          /* of the stage */
-  unsigned char* looks; /* what is wrong with the facets of each cell */
-  mlim_status status;   /* of the checks inside the costs */
-  mlim_star star;       /* of the failed vertex */
-  mlim_star check;      /* of its neighbours */
+  double done; /* of the stage */
+  tidy_looks looks;
+  tidy_disks disks;
+  mlim_status status; /* of the checks inside the costs */
+  mlim_star star;     /* of the failed vertex */
   int32_t part[MAX_PART];
   size_t part_count;
   int32_t vertices[4 * MAX_PART];
@@ -49,143 +39,6 @@ typedef struct tidier
   int32_t* bad; /* cells with a bad triangle */
   size_t bad_count, bad_capacity;
 } tidier;
-
-/* Verification has looked at nearly all facets already, and from as far unless a bound is tighter. Not to
-   be asked once labels have changed: they may have changed sides. */
-static int is_known_to_be_seen(const mlim_refinement* r, const mlim_cell* cell, int index)
-{
-  const mlim_complex* complex = &r->complex;
-  const int32_t other = complex->cells[cell->neighbors[index]].label;
-  const mlim_facet* facet = &complex->facets[cell->facets[index]];
-  return facet->is_alive && facet->is_settled &&
-         facet->sheet.low == (cell->label < other ? cell->label : other) &&
-         facet->sheet.high == (cell->label < other ? other : cell->label) &&
-         !(mlim_criteria_distance(complex, r->options, &facet->sheet) < r->options->facet_distance);
-}
-
-/* As the bits of facet 0. is_first_look: no label has changed yet. */
-static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index, int is_first_look)
-{
-  const mlim_complex* complex = &r->complex;
-  const mlim_cell* cell = &complex->cells[id];
-  const int32_t other = complex->cells[cell->neighbors[index]].label;
-  const int is_stray = tidy_stray_count(complex, cell, index, cell->label, other) > 0;
-  const int is_bad =
-    tidy_is_misshapen(r, cell, index) ||
-    (!(is_first_look && is_known_to_be_seen(r, cell, index)) &&
-      !mlim_sides_are_seen(complex, id, index, cell->label, other, r->options->facet_distance));
-  return (unsigned)is_stray | (unsigned)is_bad << BAD_SHIFT;
-}
-
-static void ask_ahead(const tidier* t, size_t cell)
-{
-  const mlim_complex* complex = &t->refinement->complex;
-  const unsigned sides = t->boundary->sides[cell] >> MLIM_FIRST_SHIFT;
-  for (int k = 0; sides >> k != 0; ++k)
-  {
-    if (sides >> k & 1u)
-    {
-      mlim_ahead_of_facet(complex, (int32_t)cell, k);
-      mlim_prefetch(&complex->facets[complex->cells[cell].facets[k]]);
-    }
-  }
-}
-
-/* Looks at each facet from its cell of the lower id. */
-static void look_body(void* data, size_t begin, size_t end)
-{
-  const tidier* t = (const tidier*)data;
-  for (size_t c = begin; c < end; ++c)
-  {
-    const unsigned sides = t->boundary->sides[c] >> MLIM_FIRST_SHIFT;
-    unsigned looks = 0;
-    if (c + 2 * MLIM_CELLS_AHEAD < end)
-    {
-      mlim_prefetch(&t->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
-      ask_ahead(t, c + MLIM_CELLS_AHEAD);
-    }
-    for (int k = 0; sides >> k != 0; ++k)
-    {
-      looks |= sides >> k & 1u ? look_at_facet(t->refinement, (int32_t)c, k, 1) << k : 0;
-    }
-    t->looks[c] = (unsigned char)looks;
-  }
-}
-
-/* What is wrong with a facet, told to one of its cells. */
-static void note(tidier* t, int32_t cell, int index, unsigned look)
-{
-  const unsigned mask = (1u | 1u << BAD_SHIFT) << index;
-  t->looks[cell] = (unsigned char)((t->looks[cell] & ~mask) | look << index);
-}
-
-static int index_of(const mlim_cell* cell, int32_t neighbor)
-{
-  int k = 0;
-  while (k < 3 && cell->neighbors[k] != neighbor)
-  {
-    ++k;
-  }
-  return k;
-}
-
-/* The facets' cells of the higher ids are told too: there are few with something wrong. */
-static void spread_looks(tidier* t)
-{
-  const mlim_complex* complex = &t->refinement->complex;
-  for (size_t c = 0; c < complex->cell_count; ++c)
-  {
-    for (int k = 0; k < 4 && t->looks[c] != 0; ++k)
-    {
-      const unsigned look = t->looks[c] >> k & (1u | 1u << BAD_SHIFT);
-      if (look != 0 && t->boundary->sides[c] >> (MLIM_FIRST_SHIFT + k) & 1u)
-      {
-        const int32_t other = complex->cells[c].neighbors[k];
-        note(t, other, index_of(&complex->cells[other], (int32_t)c), look);
-      }
-    }
-  }
-}
-
-static mlim_status look_at_all(tidier* t)
-{
-  const size_t count = t->refinement->complex.cell_count;
-  t->looks = mlim_allocate(count, 1);
-  if (t->looks == NULL)
-  {
-    return mlim_fail_memory(t->context, "mending the topology");
-  }
-  const mlim_status status = mlim_parallel_stage(t->context, &(mlim_stage_work){ .count = count,
-                                                               .body = look_body,
-                                                               .job = t,
-                                                               .stage = MLIM_STAGE_CERTIFICATE,
-                                                               .from = t->done,
-                                                               .to = t->done,
-                                                               .step = LOOK_EVERY });
-  if (status == MLIM_OK)
-  {
-    spread_looks(t);
-  }
-  return status;
-}
-
-/* A cell has a new label. */
-static void look_again(tidier* t, int32_t id)
-{
-  const mlim_complex* complex = &t->refinement->complex;
-  const mlim_cell* cell = &complex->cells[id];
-  mlim_boundary_update(t->boundary, complex, id);
-  for (int k = 0; k < 4; ++k)
-  {
-    const int32_t other = cell->neighbors[k];
-    const int back = index_of(&complex->cells[other], id);
-    const unsigned look = cell->label == complex->cells[other].label ? 0
-                          : id < other ? look_at_facet(t->refinement, id, k, 0)
-                                       : look_at_facet(t->refinement, other, back, 0);
-    note(t, id, k, look);
-    note(t, other, back, look);
-  }
-}
 
 /* ---- strays ---- */
 
@@ -227,7 +80,7 @@ static size_t mend_strays_from(tidier* t, int32_t first)
   {
     const int32_t id = stack[--count];
     mlim_cell* cell = &complex->cells[id];
-    if (!(t->looks[id] & STRAYS) || tidy_is_frozen(complex, cell))
+    if (!(t->looks.bits[id] & TIDY_STRAYS) || tidy_is_frozen(complex, cell))
     {
       continue;
     }
@@ -238,7 +91,7 @@ static size_t mend_strays_from(tidier* t, int32_t first)
     }
     cell->label = label;
     mlim_complex_touch_cell(complex, id);
-    look_again(t, id);
+    tidy_looks_update(&t->looks, id);
     ++changed;
     for (int k = 0; k < 4 && count < MAX_STACK; ++k)
     {
@@ -253,7 +106,7 @@ static size_t mend_strays(tidier* t)
   size_t changed = 0;
   for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
   {
-    changed += t->looks[c] & STRAYS ? mend_strays_from(t, (int32_t)c) : 0;
+    changed += t->looks.bits[c] & TIDY_STRAYS ? mend_strays_from(t, (int32_t)c) : 0;
   }
   return changed;
 }
@@ -263,7 +116,8 @@ static size_t count_strays(const tidier* t)
   size_t count = 0;
   for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
   {
-    unsigned bits = t->looks[c] & STRAYS & t->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    unsigned bits =
+      t->looks.bits[c] & TIDY_STRAYS & t->looks.boundary->sides[c] >> MLIM_FIRST_SHIFT;
     for (; bits != 0; bits &= bits - 1)
     {
       ++count;
@@ -274,13 +128,13 @@ static size_t count_strays(const tidier* t)
 
 /* ---- stars that are no disks ---- */
 
-static int fails(tidier* t, int32_t vertex)
+static int fails(tidier* t, int32_t vertex, int is_trial)
 {
-  mlim_disk disk = MLIM_DISK_HOLDS;
-  const mlim_status status = mlim_disk_check(
-    &t->refinement->complex, &t->refinement->links, vertex, &t->check, t->context, &disk);
+  int has_failed;
+  const mlim_status status = is_trial ? tidy_disks_check(&t->disks, vertex, t->context, &has_failed)
+                                      : tidy_disks_ask(&t->disks, vertex, t->context, &has_failed);
   t->status = t->status == MLIM_OK ? status : t->status;
-  return disk == MLIM_DISK_FAILS;
+  return has_failed;
 }
 
 static int contains(const int32_t* list, size_t count, int32_t value)
@@ -353,8 +207,9 @@ enum
   SIDE_COST = 13
 };
 
-/* At least `enough`: it was not worth to count on. Disks last, since they cost most to look at. */
-static long cost(tidier* t, long enough)
+/* At least `enough`: it was not worth to count on. Disks last, since they cost most to look at; those of
+   the labels as they are, without a trial, are known. */
+static long cost(tidier* t, long enough, int is_trial)
 {
   const mlim_complex* complex = &t->refinement->complex;
   long sum = 0;
@@ -367,7 +222,7 @@ static long cost(tidier* t, long enough)
   }
   for (size_t k = 0; k < t->vertex_count && sum < enough; ++k)
   {
-    sum += DISK_COST * fails(t, t->vertices[k]);
+    sum += DISK_COST * fails(t, t->vertices[k], is_trial);
   }
   return sum;
 }
@@ -386,7 +241,7 @@ static size_t mend_part(tidier* t)
   mlim_complex* complex = &t->refinement->complex;
   const int32_t own = complex->cells[t->part[0]].label;
   gather_vertices(t);
-  long least = cost(t, LONG_MAX);
+  long least = cost(t, LONG_MAX, 0);
   int32_t best = own;
   int32_t tried[4 * MAX_PART];
   size_t tried_count = 0;
@@ -404,7 +259,7 @@ static size_t mend_part(tidier* t)
   for (size_t n = 0; n < tried_count; ++n)
   {
     relabel(t, tried[n]);
-    const long sum = cost(t, least);
+    const long sum = cost(t, least, 1);
     if (sum < least)
     {
       least = sum;
@@ -414,8 +269,8 @@ static size_t mend_part(tidier* t)
   relabel(t, best);
   for (size_t p = 0; p < t->part_count && best != own; ++p)
   {
-    mlim_complex_touch_cell(complex, t->part[p]);
-    look_again(t, t->part[p]);
+    tidy_disks_update(&t->disks, t->part[p]);
+    tidy_looks_update(&t->looks, t->part[p]);
   }
   return best != own ? t->part_count : 0;
 }
@@ -490,6 +345,7 @@ static mlim_status mend_disks(tidier* t, size_t* changed)
 {
   const mlim_complex* complex = &t->refinement->complex;
   mlim_status status = mlim_disks_settle(t->refinement, t->done, t->context);
+  status = status == MLIM_OK ? tidy_disks_create(t->refinement, t->context, &t->disks) : status;
   for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count && status == MLIM_OK; ++v)
   {
     if (complex->vertices[v].is_broken || complex->vertices[v].is_dirty)
@@ -538,7 +394,7 @@ static mlim_status list_bad(tidier* t)
 {
   for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
   {
-    if (t->looks[c] >> BAD_SHIFT != 0)
+    if (t->looks.bits[c] >> TIDY_BAD_SHIFT != 0)
     {
       if (mlim_reserve(&t->bad, &t->bad_capacity, t->bad_count + 1, sizeof *t->bad))
       {
@@ -550,15 +406,18 @@ static mlim_status list_bad(tidier* t)
   return mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, t->done);
 }
 
-/* Bad triangles, some of which the changes above have brought to light: other labels may hide them. */
+/* Bad triangles, some of which the changes above have brought to light: other labels may hide them. What
+   has been tried in vain is tried again only if labels near it have changed since. */
 static mlim_status mend_shapes(tidier* t, size_t* changed)
 {
   mlim_status status = list_bad(t);
   for (int sweep = 0; sweep < SHAPE_SWEEPS && status == MLIM_OK; ++sweep)
   {
+    ++t->disks.sweep;
     for (size_t k = 0; k < t->bad_count && status == MLIM_OK; ++k)
     {
-      *changed += is_bad(t, t->bad[k]) ? mend_shape(t, t->bad[k]) : 0;
+      const int is_tried = sweep == 0 || tidy_disks_are_new(&t->disks, t->bad[k]);
+      *changed += is_tried && is_bad(t, t->bad[k]) ? mend_shape(t, t->bad[k]) : 0;
       status = t->status;
     }
   }
@@ -573,10 +432,10 @@ mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, 
   {
     return mlim_fail_memory(context, "mending the topology");
   }
-  *t = (tidier){ .refinement = refinement, .boundary = boundary, .context = context, .done = done };
+  *t = (tidier){ .refinement = refinement, .context = context, .done = done };
   *count = 0;
   *stray_count = 0;
-  mlim_status status = look_at_all(t);
+  mlim_status status = tidy_looks_create(refinement, boundary, done, context, &t->looks);
   if (status == MLIM_OK)
   {
     *count = mend_strays(t);
@@ -588,8 +447,8 @@ mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, 
     *stray_count = count_strays(t);
   }
   mlim_star_free(&t->star);
-  mlim_star_free(&t->check);
-  mlim_release(t->looks);
+  tidy_looks_free(&t->looks);
+  tidy_disks_free(&t->disks);
   mlim_release(t->bad);
   mlim_release(t);
   return status;

@@ -1,0 +1,91 @@
+#include "tidy_disks.h"
+
+#include "memory.h"
+#include "status.h"
+
+enum
+{
+  UNKNOWN,
+  HOLDS,
+  FAILS
+};
+
+mlim_status tidy_disks_create(mlim_refinement* refinement, mlim_context* context, tidy_disks* out)
+{
+  const size_t count = refinement->complex.vertex_count;
+  *out = (tidy_disks){ .refinement = refinement,
+    .known = mlim_allocate_zeroed(count, 1),
+    .changes = mlim_allocate_zeroed(count, 1) };
+  if (out->known == NULL || out->changes == NULL)
+  {
+    tidy_disks_free(out);
+    return mlim_fail_memory(context, "mending the topology");
+  }
+  return MLIM_OK;
+}
+
+void tidy_disks_free(tidy_disks* disks)
+{
+  mlim_star_free(&disks->star);
+  mlim_release(disks->known);
+  mlim_release(disks->changes);
+  *disks = (tidy_disks){ 0 };
+}
+
+mlim_status tidy_disks_check(
+  tidy_disks* disks, int32_t vertex, mlim_context* context, int* has_failed)
+{
+  const mlim_refinement* r = disks->refinement;
+  mlim_disk disk = MLIM_DISK_HOLDS;
+  const mlim_status status =
+    mlim_disk_check(&r->complex, &r->links, vertex, &disks->star, context, &disk);
+  *has_failed = disk == MLIM_DISK_FAILS;
+  return status;
+}
+
+mlim_status tidy_disks_ask(
+  tidy_disks* disks, int32_t vertex, mlim_context* context, int* has_failed)
+{
+  const mlim_vertex* v = &disks->refinement->complex.vertices[vertex];
+  unsigned char* known = &disks->known[vertex];
+  if (!v->is_dirty)
+  {
+    *has_failed = v->is_broken;
+    return MLIM_OK;
+  }
+  mlim_status status = MLIM_OK;
+  *has_failed = *known == FAILS;
+  if (*known == UNKNOWN)
+  {
+    status = tidy_disks_check(disks, vertex, context, has_failed);
+    *known = status != MLIM_OK ? UNKNOWN : *has_failed ? FAILS : HOLDS;
+  }
+  return status;
+}
+
+void tidy_disks_update(tidy_disks* disks, int32_t cell)
+{
+  mlim_complex* complex = &disks->refinement->complex;
+  mlim_complex_touch_cell(complex, cell);
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t v = complex->cells[cell].vertices[k];
+    disks->known[v] = UNKNOWN;
+    disks->changes[v] = disks->sweep;
+  }
+}
+
+int tidy_disks_are_new(const tidy_disks* disks, int32_t cell)
+{
+  const mlim_complex* complex = &disks->refinement->complex;
+  const mlim_cell* own = &complex->cells[cell];
+  int most = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const mlim_cell* other = &complex->cells[own->neighbors[k]];
+    const int32_t beyond = other->vertices[mlim_complex_index_apart(other, own)];
+    most = disks->changes[own->vertices[k]] > most ? disks->changes[own->vertices[k]] : most;
+    most = disks->changes[beyond] > most ? disks->changes[beyond] : most;
+  }
+  return most + 1 >= disks->sweep;
+}

@@ -1,0 +1,160 @@
+#include "tidy_looks.h"
+
+#include "ahead.h"
+#include "memory.h"
+#include "sides.h"
+#include "status.h"
+#include "tidy_cell.h"
+
+enum
+{
+  LOOK_EVERY = 65536 /* cells between two looks at the host: some milliseconds */
+};
+
+/* Verification has looked at nearly all facets already, and from as far unless a bound is tighter. Not to
+   be asked once labels have changed: they may have changed sides. */
+static int is_known_to_be_seen(const mlim_refinement* r, const mlim_cell* cell, int index)
+{
+  const mlim_complex* complex = &r->complex;
+  const int32_t other = complex->cells[cell->neighbors[index]].label;
+  const mlim_facet* facet = &complex->facets[cell->facets[index]];
+  return facet->is_alive && facet->is_settled &&
+         facet->sheet.low == (cell->label < other ? cell->label : other) &&
+         facet->sheet.high == (cell->label < other ? other : cell->label) &&
+         !(mlim_criteria_distance(complex, r->options, &facet->sheet) < r->options->facet_distance);
+}
+
+/* As the bits of facet 0. is_first_look: no label has changed yet. */
+static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index, int is_first_look)
+{
+  const mlim_complex* complex = &r->complex;
+  const mlim_cell* cell = &complex->cells[id];
+  const int32_t other = complex->cells[cell->neighbors[index]].label;
+  const int is_stray = tidy_stray_count(complex, cell, index, cell->label, other) > 0;
+  const int is_bad =
+    tidy_is_misshapen(r, cell, index) ||
+    (!(is_first_look && is_known_to_be_seen(r, cell, index)) &&
+      !mlim_sides_are_seen(complex, id, index, cell->label, other, r->options->facet_distance));
+  return (unsigned)is_stray | (unsigned)is_bad << TIDY_BAD_SHIFT;
+}
+
+static void ask_ahead(const tidy_looks* t, size_t cell)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  const unsigned sides = t->boundary->sides[cell] >> MLIM_FIRST_SHIFT;
+  for (int k = 0; sides >> k != 0; ++k)
+  {
+    if (sides >> k & 1u)
+    {
+      mlim_ahead_of_facet(complex, (int32_t)cell, k);
+      mlim_prefetch(&complex->facets[complex->cells[cell].facets[k]]);
+    }
+  }
+}
+
+/* Looks at each facet from its cell of the lower id. */
+static void look_body(void* data, size_t begin, size_t end)
+{
+  const tidy_looks* t = (const tidy_looks*)data;
+  for (size_t c = begin; c < end; ++c)
+  {
+    const unsigned sides = t->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    unsigned looks = 0;
+    if (c + 2 * MLIM_CELLS_AHEAD < end)
+    {
+      mlim_prefetch(&t->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
+      ask_ahead(t, c + MLIM_CELLS_AHEAD);
+    }
+    for (int k = 0; sides >> k != 0; ++k)
+    {
+      looks |= sides >> k & 1u ? look_at_facet(t->refinement, (int32_t)c, k, 1) << k : 0;
+    }
+    t->bits[c] = (unsigned char)looks;
+  }
+}
+
+/* What is wrong with a facet, told to one of its cells. */
+static void note(tidy_looks* t, int32_t cell, int index, unsigned look)
+{
+  const unsigned mask = (1u | 1u << TIDY_BAD_SHIFT) << index;
+  t->bits[cell] = (unsigned char)((t->bits[cell] & ~mask) | look << index);
+}
+
+static int index_of(const mlim_cell* cell, int32_t neighbor)
+{
+  int k = 0;
+  while (k < 3 && cell->neighbors[k] != neighbor)
+  {
+    ++k;
+  }
+  return k;
+}
+
+/* The facets' cells of the higher ids are told too: there are few with something wrong. */
+static void spread_looks(tidy_looks* t)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    for (int k = 0; k < 4 && t->bits[c] != 0; ++k)
+    {
+      const unsigned look = t->bits[c] >> k & (1u | 1u << TIDY_BAD_SHIFT);
+      if (look != 0 && t->boundary->sides[c] >> (MLIM_FIRST_SHIFT + k) & 1u)
+      {
+        const int32_t other = complex->cells[c].neighbors[k];
+        note(t, other, index_of(&complex->cells[other], (int32_t)c), look);
+      }
+    }
+  }
+}
+
+mlim_status tidy_looks_create(mlim_refinement* refinement, mlim_boundary* boundary, double done,
+  mlim_context* context, tidy_looks* out)
+{
+  const size_t count = refinement->complex.cell_count;
+  *out =
+    (tidy_looks){ .refinement = refinement, .boundary = boundary, .bits = mlim_allocate(count, 1) };
+  if (out->bits == NULL)
+  {
+    return mlim_fail_memory(context, "mending the topology");
+  }
+  const mlim_status status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = count,
+                                                            .body = look_body,
+                                                            .job = out,
+                                                            .stage = MLIM_STAGE_CERTIFICATE,
+                                                            .from = done,
+                                                            .to = done,
+                                                            .step = LOOK_EVERY });
+  if (status == MLIM_OK)
+  {
+    spread_looks(out);
+  }
+  else
+  {
+    tidy_looks_free(out);
+  }
+  return status;
+}
+
+void tidy_looks_free(tidy_looks* looks)
+{
+  mlim_release(looks->bits);
+  *looks = (tidy_looks){ 0 };
+}
+
+void tidy_looks_update(tidy_looks* looks, int32_t id)
+{
+  const mlim_complex* complex = &looks->refinement->complex;
+  const mlim_cell* cell = &complex->cells[id];
+  mlim_boundary_update(looks->boundary, complex, id);
+  for (int k = 0; k < 4; ++k)
+  {
+    const int32_t other = cell->neighbors[k];
+    const int back = index_of(&complex->cells[other], id);
+    const unsigned look = cell->label == complex->cells[other].label ? 0
+                          : id < other ? look_at_facet(looks->refinement, id, k, 0)
+                                       : look_at_facet(looks->refinement, other, back, 0);
+    note(looks, id, k, look);
+    note(looks, other, back, look);
+  }
+}
