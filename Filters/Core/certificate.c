@@ -149,18 +149,21 @@ typedef struct distance_visit
 {
   const distance_job* job;
   slice_result* result;
+  mlim_nearest_hints hints;
 } distance_visit;
 
+/* What is not farther than the farthest before needs no exact distance. */
 static void visit_crossing(
   void* user, const int32_t low[3], const int32_t high[3], const mlim_crossing* crossing)
 {
-  (void)low;
   (void)high;
-  const distance_visit* visit = (const distance_visit*)user;
+  distance_visit* visit = (distance_visit*)user;
+  const distance_job* job = visit->job;
+  const double enough = mlim_min(job->bound, visit->result->most);
   const double d = mlim_nearest_distance(
-    visit->job->nearest, crossing->point, visit->job->bound, visit->job->limit);
+    job->nearest, crossing->point, enough, job->limit, mlim_nearest_hint_at(&visit->hints, low[0]));
   ++visit->result->count;
-  visit->result->far_count += d > visit->job->bound;
+  visit->result->far_count += d > job->bound;
   visit->result->most = mlim_max(visit->result->most, d);
 }
 
@@ -173,6 +176,7 @@ static void distance_body(void* data, size_t begin, size_t end)
   for (size_t z = begin; z < end; ++z)
   {
     distance_visit visit = { .job = job, .result = &job->slices[z] };
+    mlim_nearest_hints_clear(&visit.hints);
     mlim_crossings_of_slice(&exact, (int32_t)z, visit_crossing, &visit);
   }
 }

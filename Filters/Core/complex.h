@@ -35,6 +35,7 @@ typedef struct mlim_facet
   unsigned char is_multiple : 1; /* crosses more often than the labels of its cells tell */
   unsigned char is_judged : 1;   /* for the loop, which looks at each facet once */
   unsigned char is_settled : 1;  /* for verification, which does so too */
+  unsigned char is_measured : 1; /* for it too: it was in a skin */
   int32_t cell;                  /* facet `index` of this cell */
   uint32_t generation;           /* counts the uses of this record */
 } mlim_facet;

@@ -193,6 +193,28 @@ static int difference_of(
   return values[0] != NULL && values[1] != NULL;
 }
 
+void mlim_field_ahead(const mlim_field* field, const double point[3], int is_second)
+{
+  int32_t cell[3];
+  double at[3];
+  if (!find_cell(field, point, cell, at))
+  {
+    return;
+  }
+  if (!is_second)
+  {
+    field_cell_word_ahead(field, cell);
+    return;
+  }
+  const uint32_t word = field_cell_word(field, cell);
+  if (word & (uint32_t)MIXED)
+  {
+    const uint32_t* entry = field_pool_entry(field, cell, word);
+    mlim_prefetch(entry);
+    mlim_prefetch(entry + PAIR_WORDS - 1);
+  }
+}
+
 int mlim_field_normal(
   const mlim_field* field, const double point[3], int32_t first, int32_t second, double out[3])
 {

@@ -61,6 +61,10 @@ typedef struct mlim_field_look
    and they wait for it together. */
 void mlim_field_look_at(const mlim_field* field, mlim_field_look* looks, size_t count);
 
+/* Asks for what there is at a point before it is looked at: first for where it is, some looks later for it.
+   Nothing changes but the time. */
+void mlim_field_ahead(const mlim_field* field, const double point[3], int is_second);
+
 /* The direction, of length 1, in which the first of two labels gains most on the second at a point. 0: there
    is none, or the point's cell does not list both. */
 int mlim_field_normal(

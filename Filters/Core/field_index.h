@@ -8,6 +8,7 @@
 #define mlim_field_index_h
 
 #include "field.h"
+#include "memory.h"
 
 #include <string.h>
 
@@ -80,6 +81,20 @@ static inline uint32_t field_cell_word(const mlim_field* field, const int32_t ce
   return word & (uint32_t)MIXED
            ? field->layers[cell[2] >> 2].words[(word & DETAIL) * BRICK_CELLS + field_slot_of(cell)]
            : word;
+}
+
+static inline void field_cell_word_ahead(const mlim_field* field, const int32_t cell[3])
+{
+  const uint32_t brick =
+    field->coarse[(size_t)(cell[0] >> 2) +
+                  (size_t)field->bricks[0] *
+                    ((size_t)(cell[1] >> 2) + (size_t)field->bricks[1] * (size_t)(cell[2] >> 2))];
+  if (brick & (uint32_t)MIXED)
+  {
+    const size_t slot =
+      (size_t)(cell[0] & 3) | (size_t)(cell[1] & 3) << 2 | (size_t)(cell[2] & 3) << 4;
+    mlim_prefetch(&field->layers[cell[2] >> 2].words[(brick & DETAIL) * BRICK_CELLS + slot]);
+  }
 }
 
 /* The pool entry of a mixed cell. */

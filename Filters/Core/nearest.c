@@ -229,71 +229,117 @@ static double triangle_distance_squared(
     mlim_min(segment_distance_squared(p, b, c), segment_distance_squared(p, c, a)));
 }
 
-static double bin_distance_squared(
-  const mlim_nearest* nearest, size_t bin, const double point[3], double best, double enough)
+/* The triangle that is nearest so far. */
+typedef struct search
 {
-  for (size_t k = nearest->offsets[bin]; k < nearest->offsets[bin + 1]; ++k)
-  {
-    const int32_t* t = nearest->mesh.vertices + 3 * (size_t)nearest->triangles[k];
-    best = triangle_distance_squared(
-      point, point_of(nearest, t[0]), point_of(nearest, t[1]), point_of(nearest, t[2]), best);
-    if (best <= enough)
-    {
-      break;
-    }
-  }
-  return best;
+  const mlim_nearest* nearest;
+  const double* point;
+  double best; /* squared */
+  double enough;
+  int32_t triangle; /* -1: none */
+} search;
+
+static void look_at_triangle(search* s, int32_t triangle)
+{
+  const int32_t* t = s->nearest->mesh.vertices + 3 * (size_t)triangle;
+  const double d = triangle_distance_squared(s->point, point_of(s->nearest, t[0]),
+    point_of(s->nearest, t[1]), point_of(s->nearest, t[2]), s->best);
+  s->triangle = d < s->best ? triangle : s->triangle;
+  s->best = mlim_min(d, s->best);
 }
 
-double mlim_nearest_distance(
-  const mlim_nearest* nearest, const double point[3], double enough, double limit)
+/* Whether that is enough. */
+static int look_at_bin(search* s, int32_t x, int32_t y, int32_t z)
 {
+  const mlim_nearest* nearest = s->nearest;
+  const size_t bin =
+    (size_t)x + (size_t)nearest->bins[0] * ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
+  for (size_t k = nearest->offsets[bin]; k < nearest->offsets[bin + 1]; ++k)
+  {
+    look_at_triangle(s, nearest->triangles[k]);
+    if (s->best <= s->enough)
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* Whether that is enough. Points near to each other have a triangle near in common. */
+static int start_at_hint(search* s, const int32_t* hint)
+{
+  if (*hint >= 0)
+  {
+    look_at_triangle(s, *hint);
+  }
+  return s->best <= s->enough;
+}
+
+/* Shells of bins: beyond shell s everything is at least s bins away. */
+static void search_shells(search* s)
+{
+  const int32_t* bins = s->nearest->bins;
   int32_t at[3];
   int32_t widest = 0;
   for (int k = 0; k < 3; ++k)
   {
-    at[k] = bin_of(nearest, point[k], k);
-    widest = nearest->bins[k] > widest ? nearest->bins[k] : widest;
+    at[k] = bin_of(s->nearest, s->point[k], k);
+    widest = bins[k] > widest ? bins[k] : widest;
   }
-  double best = limit * limit;
-  /* Shells of bins: beyond shell s everything is at least s bins away. */
-  for (int32_t s = 0; s <= widest; ++s)
+  for (int32_t d = 0; d <= widest; ++d)
   {
-    const double reach = (s - 1) * nearest->bin;
-    if (s > 0 && reach > 0 && reach * reach >= best)
+    const double reach = (d - 1) * s->nearest->bin;
+    if (d > 0 && reach > 0 && reach * reach >= s->best)
     {
       break;
     }
-    for (int32_t z = at[2] - s; z <= at[2] + s; ++z)
+    for (int32_t z = at[2] - d; z <= at[2] + d; ++z)
     {
-      for (int32_t y = at[1] - s; y <= at[1] + s; ++y)
+      for (int32_t y = at[1] - d; y <= at[1] + d; ++y)
       {
-        const int is_side = z == at[2] - s || z == at[2] + s || y == at[1] - s || y == at[1] + s;
-        for (int32_t x = at[0] - s; x <= at[0] + s; x += is_side || s == 0 ? 1 : 2 * s)
+        const int is_side = z == at[2] - d || z == at[2] + d || y == at[1] - d || y == at[1] + d;
+        for (int32_t x = at[0] - d; x <= at[0] + d; x += is_side || d == 0 ? 1 : 2 * d)
         {
-          if (x < 0 || y < 0 || z < 0 || x >= nearest->bins[0] || y >= nearest->bins[1] ||
-              z >= nearest->bins[2])
+          if (x >= 0 && y >= 0 && z >= 0 && x < bins[0] && y < bins[1] && z < bins[2] &&
+              look_at_bin(s, x, y, z))
           {
-            continue;
-          }
-          const size_t bin = (size_t)x + (size_t)nearest->bins[0] *
-                                           ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
-          best = bin_distance_squared(nearest, bin, point, best, enough * enough);
-          if (best <= enough * enough)
-          {
-            return sqrt(best);
+            return;
           }
         }
       }
     }
   }
-  return sqrt(best);
 }
 
-int mlim_nearest_is_within(const mlim_nearest* nearest, const double point[3], double bound)
+double mlim_nearest_distance(
+  const mlim_nearest* nearest, const double point[3], double enough, double limit, int32_t* hint)
+{
+  search s = { .nearest = nearest,
+    .point = point,
+    .best = limit * limit,
+    .enough = enough * enough,
+    .triangle = -1 };
+  if (!start_at_hint(&s, hint))
+  {
+    search_shells(&s);
+  }
+  *hint = s.triangle >= 0 ? s.triangle : *hint;
+  return sqrt(s.best);
+}
+
+int mlim_nearest_is_within(
+  const mlim_nearest* nearest, const double point[3], double bound, int32_t* hint)
 {
   /* A triangle just beyond the bound is measured, not cut off at it. */
-  const double limit = bound * bound * (1 + 1e-9);
+  search s = { .nearest = nearest,
+    .point = point,
+    .best = bound * bound * (1 + 1e-9),
+    .enough = bound * bound,
+    .triangle = -1 };
+  if (start_at_hint(&s, hint))
+  {
+    return 1;
+  }
   int32_t low[3];
   int32_t high[3];
   for (int k = 0; k < 3; ++k)
@@ -301,20 +347,17 @@ int mlim_nearest_is_within(const mlim_nearest* nearest, const double point[3], d
     low[k] = bin_of(nearest, point[k] - bound, k);
     high[k] = bin_of(nearest, point[k] + bound, k);
   }
-  for (int32_t z = low[2]; z <= high[2]; ++z)
+  int is_found = 0;
+  for (int32_t z = low[2]; z <= high[2] && !is_found; ++z)
   {
-    for (int32_t y = low[1]; y <= high[1]; ++y)
+    for (int32_t y = low[1]; y <= high[1] && !is_found; ++y)
     {
-      for (int32_t x = low[0]; x <= high[0]; ++x)
+      for (int32_t x = low[0]; x <= high[0] && !is_found; ++x)
       {
-        const size_t bin =
-          (size_t)x + (size_t)nearest->bins[0] * ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
-        if (bin_distance_squared(nearest, bin, point, limit, bound * bound) <= bound * bound)
-        {
-          return 1;
-        }
+        is_found = look_at_bin(&s, x, y, z);
       }
     }
   }
-  return 0;
+  *hint = is_found ? s.triangle : *hint;
+  return is_found;
 }

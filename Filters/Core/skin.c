@@ -100,13 +100,14 @@ static int reaches(
   return 0;
 }
 
+static int is_new(const mlim_facet* facet)
+{
+  return facet->is_alive && !facet->is_measured;
+}
+
 /* Every facet between two labels has a record. */
 static int is_boundary(const mlim_complex* complex, const mlim_facet* facet)
 {
-  if (!facet->is_alive)
-  {
-    return 0;
-  }
   const mlim_cell* cell = &complex->cells[facet->cell];
   return cell->label != complex->cells[cell->neighbors[facet->index]].label;
 }
@@ -119,16 +120,31 @@ enum
 
 typedef struct skin_job
 {
-  const mlim_complex* complex;
+  mlim_complex* complex;
   const mlim_skin_blocks* blocks;
   mlim_skin* skin;
   size_t* counts; /* triangles of each block of records, at the block's place in the mesh */
 } skin_job;
 
+static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
+{
+  const mlim_facet* facets = complex->facets;
+  if (f + MLIM_CELLS_AHEAD < end && is_new(&facets[f + MLIM_CELLS_AHEAD]))
+  {
+    mlim_prefetch(&complex->cells[facets[f + MLIM_CELLS_AHEAD].cell]);
+  }
+  if (f + MLIM_VERTICES_AHEAD < end && is_new(&facets[f + MLIM_VERTICES_AHEAD]))
+  {
+    const mlim_facet* facet = &facets[f + MLIM_VERTICES_AHEAD];
+    mlim_ahead_of_facet(complex, facet->cell, facet->index);
+  }
+}
+
+/* Marks what it takes. */
 static void facet_body(void* data, size_t begin, size_t end)
 {
   const skin_job* job = (const skin_job*)data;
-  const mlim_complex* complex = job->complex;
+  mlim_complex* complex = job->complex;
   for (size_t b = begin; b < end; ++b)
   {
     const size_t left = complex->facet_count - b * BLOCK;
@@ -136,11 +152,12 @@ static void facet_body(void* data, size_t begin, size_t end)
     size_t count = 0;
     for (size_t f = b * BLOCK; f < last; ++f)
     {
-      mlim_ahead_of_record(complex, f, last);
-      const mlim_facet* facet = &complex->facets[f];
+      ask_ahead(complex, f, last);
+      mlim_facet* facet = &complex->facets[f];
       int32_t* triangle = job->skin->triangles + 3 * (b * BLOCK + count);
-      if (is_boundary(complex, facet))
+      if (is_new(facet) && is_boundary(complex, facet))
       {
+        facet->is_measured = 1;
         mlim_complex_facet_vertices(complex, facet->cell, facet->index, triangle);
         count += job->blocks->is_near == NULL || reaches(job->blocks, complex, triangle);
       }
@@ -181,7 +198,7 @@ static mlim_status read_all(const skin_job* job, double done, mlim_context* cont
   return status;
 }
 
-mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
+mlim_status mlim_skin_read(mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
   mlim_context* context, mlim_skin* out)
 {
   *out = (mlim_skin){ 0 };

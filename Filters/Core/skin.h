@@ -26,8 +26,8 @@ typedef struct mlim_skin
   int32_t* triangles; /* 3 each */
 } mlim_skin;
 
-/* The triangles that reach into the blocks. `done` is reported as the share of the surface's stage. */
-mlim_status mlim_skin_read(const mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
+/* The triangles that reach into the blocks and were in no skin before. `done` is reported as the share of the surface's stage. */
+mlim_status mlim_skin_read(mlim_complex* complex, const mlim_skin_blocks* blocks, double done,
   mlim_context* context, mlim_skin* out);
 void mlim_skin_free(mlim_skin* skin);
 

@@ -63,6 +63,7 @@ typedef struct far_visit
 {
   const far_job* job;
   far_list* list;
+  mlim_nearest_hints hints;
 } far_visit;
 
 static int is_small(const far_job* job, const int32_t point[3])
@@ -72,15 +73,15 @@ static int is_small(const far_job* job, const int32_t point[3])
   return components->components[at].voxel_count < job->min_voxels;
 }
 
-static int is_far(const far_job* job, const mlim_crossing* crossing)
+static int is_far(const far_job* job, const mlim_crossing* crossing, int32_t* hint)
 {
-  return !mlim_nearest_is_within(job->nearest, crossing->point, job->bound);
+  return !mlim_nearest_is_within(job->nearest, crossing->point, job->bound, hint);
 }
 
 static void visit_crossing(
   void* user, const int32_t low[3], const int32_t high[3], const mlim_crossing* crossing)
 {
-  const far_visit* visit = (const far_visit*)user;
+  far_visit* visit = (far_visit*)user;
   const far_job* job = visit->job;
   far_list* list = visit->list;
   if (is_small(job, low) || is_small(job, high))
@@ -88,7 +89,7 @@ static void visit_crossing(
     return;
   }
   ++list->seen_count;
-  if (!is_far(job, crossing))
+  if (!is_far(job, crossing, mlim_nearest_hint_at(&visit->hints, low[0])))
   {
     return;
   }
@@ -103,9 +104,10 @@ static void visit_crossing(
 static void look_again(const far_job* job, far_list* list)
 {
   size_t kept = 0;
+  int32_t hint = -1;
   for (size_t k = 0; k < list->count; ++k)
   {
-    if (is_far(job, &list->crossings[k]))
+    if (is_far(job, &list->crossings[k], &hint))
     {
       list->crossings[kept++] = list->crossings[k];
     }
@@ -124,6 +126,7 @@ static void far_body(void* data, size_t begin, size_t end)
       continue;
     }
     far_visit visit = { .job = job, .list = &job->lists[z] };
+    mlim_nearest_hints_clear(&visit.hints);
     mlim_crossings_of_slice(&job->oracle, (int32_t)z, visit_crossing, &visit);
   }
 }
@@ -176,10 +179,10 @@ static int has_many_far(const mlim_verification* v)
 }
 
 /* The triangles among which a crossing may find one that is near: all, or those near the crossings that
-   were far at the last look. */
+   were far at the last look and have come since. */
 static mlim_status read_skin(const mlim_verification* v, mlim_context* context, mlim_skin* out)
 {
-  const mlim_complex* complex = &v->refinement->complex;
+  mlim_complex* complex = &v->refinement->complex;
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
   mlim_skin_blocks blocks = { 0 };
   if (v->far != NULL)
@@ -279,14 +282,35 @@ static int is_right(const mlim_refinement* r, const mlim_facet* facet)
              mlim_criteria_distance(complex, r->options, &facet->sheet)));
 }
 
+static int is_open(const mlim_facet* facet)
+{
+  return facet->is_alive && !facet->is_settled;
+}
+
+static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
+{
+  const mlim_facet* facets = complex->facets;
+  if (f + MLIM_CELLS_AHEAD < end && is_open(&facets[f + MLIM_CELLS_AHEAD]))
+  {
+    mlim_prefetch(&complex->cells[facets[f + MLIM_CELLS_AHEAD].cell]);
+    mlim_field_ahead(complex->oracle.field, facets[f + MLIM_CELLS_AHEAD].crossing, 0);
+  }
+  if (f + MLIM_VERTICES_AHEAD < end && is_open(&facets[f + MLIM_VERTICES_AHEAD]))
+  {
+    const mlim_facet* facet = &facets[f + MLIM_VERTICES_AHEAD];
+    mlim_ahead_of_facet(complex, facet->cell, facet->index);
+    mlim_field_ahead(complex->oracle.field, facet->crossing, 1);
+  }
+}
+
 static void side_body(void* data, size_t begin, size_t end)
 {
   mlim_refinement* r = (mlim_refinement*)data;
   for (size_t f = begin; f < end; ++f)
   {
     mlim_facet* facet = &r->complex.facets[f];
-    mlim_ahead_of_record(&r->complex, f, end);
-    if (facet->is_alive && !facet->is_settled)
+    ask_ahead(&r->complex, f, end);
+    if (is_open(facet))
     {
       facet->is_settled = (unsigned char)is_right(r, facet);
     }
@@ -307,7 +331,7 @@ static mlim_status look_for_sides(const mlim_verification* v, mlim_context* cont
                                    .step = LOOK_EVERY });
   for (size_t f = 1; f < complex->facet_count && status == MLIM_OK; ++f)
   {
-    if (complex->facets[f].is_alive && !complex->facets[f].is_settled)
+    if (is_open(&complex->facets[f]))
     {
       int is_taken;
       status = mlim_refine_ask(r, (int32_t)f, context, &is_taken);
@@ -323,45 +347,58 @@ static mlim_status look_for_sides(const mlim_verification* v, mlim_context* cont
 
 /* ---- lost volume ---- */
 
-static mlim_status look_for_volume(const mlim_verification* v, mlim_context* context, size_t* count)
+/* Lowers the bounds of the labels that have lost too much; these stay marked. */
+static void tighten(
+  const mlim_verification* v, const double* volumes, unsigned char* is_marked, size_t* count)
 {
   mlim_complex* complex = &v->refinement->complex;
   const mlim_options* options = v->refinement->options;
   const size_t labels = (size_t)mlim_field_label_count(complex->oracle.field);
   const double target = VOLUME_TARGET * options->volume_tolerance;
-  double* volumes = mlim_allocate(labels, sizeof *volumes);
-  unsigned char* is_tightened = mlim_allocate_zeroed(labels, 1);
-  if (volumes == NULL || is_tightened == NULL)
+  const double least = 0.25 * options->smallest_distance / options->facet_distance;
+  for (size_t l = 0; l < labels; ++l)
   {
-    mlim_release(volumes);
-    mlim_release(is_tightened);
-    return mlim_fail_memory(context, "the volumes of the labels");
-  }
-  const size_t before = *count;
-  const mlim_status status =
-    mlim_volumes_of_complex(complex, v->refinement->progress, context, volumes);
-  for (size_t l = 0; l < labels && status == MLIM_OK; ++l)
-  {
-    if (v->voxels[l] < MIN_VOLUME_VOXELS ||
-        (int32_t)l == mlim_field_outside_label(complex->oracle.field))
-    {
-      continue;
-    }
-    const double lost = fabs(volumes[l] - v->volumes[l]) / v->volumes[l];
-    const double least = 0.25 * options->smallest_distance / options->facet_distance;
-    if (lost > target && complex->distance_shares[l] > least)
+    const double lost = is_marked[l] ? fabs(volumes[l] - v->volumes[l]) / v->volumes[l] : 0;
+    is_marked[l] = lost > target && complex->distance_shares[l] > least;
+    if (is_marked[l])
     {
       complex->distance_shares[l] *= mlim_max(MOST_TIGHTENING, 0.9 * target / lost);
-      is_tightened[l] = 1;
       ++*count;
     }
   }
+}
+
+static mlim_status look_for_volume(const mlim_verification* v, mlim_context* context, size_t* count)
+{
+  const mlim_complex* complex = &v->refinement->complex;
+  const mlim_field* field = complex->oracle.field;
+  const size_t labels = (size_t)mlim_field_label_count(field);
+  double* volumes = mlim_allocate(labels, sizeof *volumes);
+  unsigned char* is_marked = mlim_allocate(labels, 1);
+  if (volumes == NULL || is_marked == NULL)
+  {
+    mlim_release(volumes);
+    mlim_release(is_marked);
+    return mlim_fail_memory(context, "the volumes of the labels");
+  }
+  for (size_t l = 0; l < labels; ++l)
+  {
+    is_marked[l] =
+      v->voxels[l] >= MIN_VOLUME_VOXELS && (int32_t)l != mlim_field_outside_label(field);
+  }
+  const size_t before = *count;
+  const mlim_status status =
+    mlim_volumes_of_complex(complex, is_marked, v->refinement->progress, context, volumes);
+  if (status == MLIM_OK)
+  {
+    tighten(v, volumes, is_marked, count);
+  }
   if (*count > before)
   {
-    mlim_refine_tighten(v->refinement, is_tightened);
+    mlim_refine_tighten(v->refinement, is_marked);
   }
   mlim_release(volumes);
-  mlim_release(is_tightened);
+  mlim_release(is_marked);
   return status;
 }
 

@@ -134,27 +134,29 @@ mlim_status mlim_volumes_of_field(
 
 enum
 {
-  CELLS_A_PIECE = 1 << 16 /* measured before they are added up, between two looks at the host */
+  CELLS_A_PIECE = 1 << 14 /* measured before they are added up, when they are still in the cache */
 };
 
 typedef struct cell_job
 {
   const mlim_complex* complex;
-  size_t first; /* cell of volumes[0] */
+  const unsigned char* is_wanted; /* a label */
+  size_t first;                   /* cell of volumes[0] */
   double* volumes;
 } cell_job;
+
+/* Far vertices stand outside the box. */
+static int is_measured(const cell_job* job, const mlim_cell* cell)
+{
+  const int32_t* id = cell->vertices;
+  return id[0] >= 0 && job->is_wanted[cell->label] && id[0] >= MLIM_FAR_VERTICES &&
+         id[1] >= MLIM_FAR_VERTICES && id[2] >= MLIM_FAR_VERTICES && id[3] >= MLIM_FAR_VERTICES;
+}
 
 static double volume_of_cell(const mlim_complex* complex, const mlim_cell* cell)
 {
   const int32_t* id = cell->vertices;
   double edge[3][3];
-  for (int k = 0; k < 4; ++k)
-  {
-    if (id[0] < 0 || complex->vertices[id[k]].kind == MLIM_VERTEX_FAR)
-    {
-      return 0;
-    }
-  }
   for (int k = 0; k < 3; ++k)
   {
     mlim_subtract(complex->vertices[id[k + 1]].point, complex->vertices[id[0]].point, edge[k]);
@@ -168,10 +170,10 @@ static void ask_ahead(const cell_job* job, size_t k, size_t end)
 {
   if (k + MLIM_CELLS_AHEAD < end)
   {
-    const int32_t* id = job->complex->cells[job->first + k + MLIM_CELLS_AHEAD].vertices;
-    for (int v = 0; v < 4 && id[0] >= 0; ++v)
+    const mlim_cell* cell = &job->complex->cells[job->first + k + MLIM_CELLS_AHEAD];
+    for (int v = 0; v < 4 && is_measured(job, cell); ++v)
     {
-      mlim_ahead_of_vertex(job->complex, id[v]);
+      mlim_prefetch(&job->complex->vertices[cell->vertices[v]]);
     }
   }
 }
@@ -181,16 +183,18 @@ static void cell_body(void* data, size_t begin, size_t end)
   const cell_job* job = (const cell_job*)data;
   for (size_t k = begin; k < end; ++k)
   {
+    const mlim_cell* cell = &job->complex->cells[job->first + k];
     ask_ahead(job, k, end);
-    job->volumes[k] = volume_of_cell(job->complex, &job->complex->cells[job->first + k]);
+    job->volumes[k] = is_measured(job, cell) ? volume_of_cell(job->complex, cell) : 0;
   }
 }
 
-mlim_status mlim_volumes_of_complex(
-  const mlim_complex* complex, double done, mlim_context* context, double* volumes)
+mlim_status mlim_volumes_of_complex(const mlim_complex* complex, const unsigned char* is_wanted,
+  double done, mlim_context* context, double* volumes)
 {
   memset(volumes, 0, (size_t)mlim_field_label_count(complex->oracle.field) * sizeof *volumes);
   cell_job job = { .complex = complex,
+    .is_wanted = is_wanted,
     .volumes = mlim_allocate(CELLS_A_PIECE, sizeof *job.volumes) };
   mlim_status status =
     job.volumes != NULL ? MLIM_OK : mlim_fail_memory(context, "the volumes of the labels");

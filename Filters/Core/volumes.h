@@ -9,9 +9,9 @@
 mlim_status mlim_volumes_of_field(
   const mlim_field* field, mlim_context* context, double* volumes, size_t* voxels);
 
-/* Per label: the cells that have it. Those with a far vertex do not count. `done` is reported as the
-   share of the surface's stage. */
-mlim_status mlim_volumes_of_complex(
-  const mlim_complex* complex, double done, mlim_context* context, double* volumes);
+/* Per label: the cells that have it. Those with a far vertex do not count, nor those of labels that are not
+   wanted (a byte a label). `done` is reported as the share of the surface's stage. */
+mlim_status mlim_volumes_of_complex(const mlim_complex* complex, const unsigned char* is_wanted,
+  double done, mlim_context* context, double* volumes);
 
 #endif
