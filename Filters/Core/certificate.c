@@ -153,18 +153,24 @@ typedef struct distance_visit
 } distance_visit;
 
 /* What is not farther than the farthest before needs no exact distance. */
-static void visit_crossing(
-  void* user, const int32_t low[3], const int32_t high[3], const mlim_crossing* crossing)
+static void visit_crossings(void* user, const mlim_grid_crossing* crossings, size_t count)
 {
-  (void)high;
   distance_visit* visit = (distance_visit*)user;
   const distance_job* job = visit->job;
-  const double enough = mlim_min(job->bound, visit->result->most);
-  const double d = mlim_nearest_distance(
-    job->nearest, crossing->point, enough, job->limit, mlim_nearest_hint_at(&visit->hints, low[0]));
-  ++visit->result->count;
-  visit->result->far_count += d > job->bound;
-  visit->result->most = mlim_max(visit->result->most, d);
+  slice_result* result = visit->result;
+  const mlim_nearest_points from = { .count = count,
+    .points = crossings->crossing.point,
+    .stride = sizeof *crossings / sizeof(double) };
+  mlim_nearest_ahead(job->nearest, &from);
+  for (size_t k = 0; k < count; ++k)
+  {
+    const double d = mlim_nearest_distance(job->nearest, crossings[k].crossing.point,
+      mlim_min(job->bound, result->most), job->limit,
+      mlim_nearest_hint_at(&visit->hints, crossings[k].low[0]));
+    result->far_count += d > job->bound;
+    result->most = mlim_max(result->most, d);
+  }
+  result->count += count;
 }
 
 static void distance_body(void* data, size_t begin, size_t end)
@@ -177,7 +183,7 @@ static void distance_body(void* data, size_t begin, size_t end)
   {
     distance_visit visit = { .job = job, .result = &job->slices[z] };
     mlim_nearest_hints_clear(&visit.hints);
-    mlim_crossings_of_slice(&exact, (int32_t)z, visit_crossing, &visit);
+    mlim_crossings_of_slice(&exact, (int32_t)z, visit_crossings, &visit);
   }
 }
 

@@ -2,10 +2,26 @@
 
 #include "field_index.h"
 
+#include <string.h>
+
 enum
 {
-  MAX_ON_EDGE = 8 /* label changes on one grid edge; more say nothing new */
+  MAX_ON_EDGE = 8, /* label changes on one grid edge; more say nothing new */
+  EDGES = 32       /* that wait for memory together */
 };
+
+/* A cell that has the grid point, which is corner `corner` of it. */
+static int find_cell(const mlim_field_grid* grid, const int32_t point[3], int32_t cell[3])
+{
+  int corner = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int is_last = point[k] == grid->cells[k];
+    cell[k] = point[k] - is_last;
+    corner |= is_last << k;
+  }
+  return corner;
+}
 
 /* Along a grid edge indicators are linear, so where two labels alone compete for a cell the crossing on
    its edge is a quotient. Returns 0 when there are more. */
@@ -13,13 +29,7 @@ static int cross_pair(const mlim_field* field, const int32_t low[3], int axis, m
 {
   const mlim_field_grid* grid = mlim_field_grid_of(field);
   int32_t cell[3];
-  int corner = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    const int is_last = low[k] == grid->cells[k];
-    cell[k] = low[k] - is_last;
-    corner |= is_last << k;
-  }
+  const int corner = find_cell(grid, low, cell);
   const uint32_t word = field_cell_word(field, cell);
   if (!(word & (uint32_t)MIXED) || (word & (uint32_t)MANY))
   {
@@ -45,38 +55,89 @@ static int cross_pair(const mlim_field* field, const int32_t low[3], int axis, m
   return 1;
 }
 
-static void visit_edge(
-  const mlim_oracle* oracle, const int32_t low[3], int axis, mlim_crossing_visit visit, void* user)
+/* Edges of the grid whose ends differ in label, with what they wait for on its way from memory. */
+typedef struct batch
 {
-  const mlim_field_grid* grid = mlim_field_grid_of(oracle->field);
+  const mlim_oracle* oracle;
+  mlim_crossings_visit visit;
+  void* user;
+  size_t edge_count;
+  struct
+  {
+    int32_t low[3];
+    int32_t cell[3];
+    int axis;
+  } edges[EDGES];
+  size_t count;
+  mlim_grid_crossing crossings[EDGES + MAX_ON_EDGE];
+} batch;
+
+static void hand_over(batch* b)
+{
+  if (b->count > 0)
+  {
+    b->visit(b->user, b->crossings, b->count);
+  }
+  b->count = 0;
+}
+
+static void cross_edge(batch* b, const int32_t low[3], int axis)
+{
+  const mlim_field_grid* grid = mlim_field_grid_of(b->oracle->field);
   int32_t high[3] = { low[0], low[1], low[2] };
   ++high[axis];
   mlim_crossing crossing[MAX_ON_EDGE];
-  if (cross_pair(oracle->field, low, axis, crossing))
+  size_t count = (size_t)cross_pair(b->oracle->field, low, axis, crossing);
+  if (count == 0)
   {
-    visit(user, low, high, crossing);
-    return;
+    double start[3];
+    double end[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      start[k] = low[k] * grid->spacing[k];
+      end[k] = high[k] * grid->spacing[k];
+    }
+    count = mlim_oracle_crossings(b->oracle, start, end, MAX_ON_EDGE, crossing);
   }
-  double start[3];
-  double end[3];
-  for (int k = 0; k < 3; ++k)
-  {
-    start[k] = low[k] * grid->spacing[k];
-    end[k] = high[k] * grid->spacing[k];
-  }
-  const size_t count = mlim_oracle_crossings(oracle, start, end, MAX_ON_EDGE, crossing);
   for (size_t c = 0; c < count; ++c)
   {
-    visit(user, low, high, &crossing[c]);
+    mlim_grid_crossing* out = &b->crossings[b->count++];
+    out->crossing = crossing[c];
+    memcpy(out->low, low, sizeof out->low);
+    memcpy(out->high, high, sizeof out->high);
   }
 }
 
+static void cross_edges(batch* b)
+{
+  const mlim_field* field = b->oracle->field;
+  for (size_t e = 0; e < b->edge_count; ++e)
+  {
+    find_cell(mlim_field_grid_of(field), b->edges[e].low, b->edges[e].cell);
+    field_word_ahead(field, b->edges[e].cell);
+  }
+  for (size_t e = 0; e < b->edge_count; ++e)
+  {
+    field_entry_ahead(field, b->edges[e].cell);
+  }
+  for (size_t e = 0; e < b->edge_count; ++e)
+  {
+    cross_edge(b, b->edges[e].low, b->edges[e].axis);
+    if (b->count >= EDGES)
+    {
+      hand_over(b);
+    }
+  }
+  b->edge_count = 0;
+}
+
 void mlim_crossings_of_slice(
-  const mlim_oracle* oracle, int32_t z, mlim_crossing_visit visit, void* user)
+  const mlim_oracle* oracle, int32_t z, mlim_crossings_visit visit, void* user)
 {
   const int32_t* dims = mlim_field_grid_of(oracle->field)->dims;
   const size_t steps[3] = { 1, (size_t)dims[0], (size_t)dims[0] * (size_t)dims[1] };
   const uint16_t* label = mlim_field_point_labels(oracle->field) + steps[2] * (size_t)z;
+  batch b = { .oracle = oracle, .visit = visit, .user = user };
   int32_t p[3] = { 0, 0, z };
   for (p[1] = 0; p[1] < dims[1]; ++p[1])
   {
@@ -86,9 +147,16 @@ void mlim_crossings_of_slice(
       {
         if (p[axis] + 1 < dims[axis] && label[steps[axis]] != *label)
         {
-          visit_edge(oracle, p, axis, visit, user);
+          memcpy(b.edges[b.edge_count].low, p, sizeof p);
+          b.edges[b.edge_count++].axis = axis;
+          if (b.edge_count == EDGES)
+          {
+            cross_edges(&b);
+          }
         }
       }
     }
   }
+  cross_edges(&b);
+  hand_over(&b);
 }

@@ -201,17 +201,13 @@ void mlim_field_ahead(const mlim_field* field, const double point[3], int is_sec
   {
     return;
   }
-  if (!is_second)
+  if (is_second)
   {
-    field_cell_word_ahead(field, cell);
-    return;
+    field_entry_ahead(field, cell);
   }
-  const uint32_t word = field_cell_word(field, cell);
-  if (word & (uint32_t)MIXED)
+  else
   {
-    const uint32_t* entry = field_pool_entry(field, cell, word);
-    mlim_prefetch(entry);
-    mlim_prefetch(entry + PAIR_WORDS - 1);
+    field_word_ahead(field, cell);
   }
 }
 

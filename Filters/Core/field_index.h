@@ -83,7 +83,8 @@ static inline uint32_t field_cell_word(const mlim_field* field, const int32_t ce
            : word;
 }
 
-static inline void field_cell_word_ahead(const mlim_field* field, const int32_t cell[3])
+/* Asks for the word, and once that is there for what it leads to, before they are read. */
+static inline void field_word_ahead(const mlim_field* field, const int32_t cell[3])
 {
   const uint32_t brick =
     field->coarse[(size_t)(cell[0] >> 2) +
@@ -102,6 +103,17 @@ static inline const uint32_t* field_pool_entry(
   const mlim_field* field, const int32_t cell[3], uint32_t word)
 {
   return field->layers[cell[2] >> 2].pool + (word & DETAIL);
+}
+
+static inline void field_entry_ahead(const mlim_field* field, const int32_t cell[3])
+{
+  const uint32_t word = field_cell_word(field, cell);
+  if (word & (uint32_t)MIXED)
+  {
+    const uint32_t* entry = field_pool_entry(field, cell, word);
+    mlim_prefetch(entry);
+    mlim_prefetch(entry + PAIR_WORDS - 1);
+  }
 }
 
 /* Label at a place in a mixed cell, in its own coordinates from 0 to 1. */

@@ -12,6 +12,12 @@ static const double BINS_A_TRIANGLE = 4;
 /* Nor more along an axis: their numbers have 16 bits while they are filled. */
 static const double MAX_BINS = 65535;
 
+enum
+{
+  AHEAD = 32, /* points */
+  FIRST = 4   /* triangles of a bin: nearly always one of them is near enough */
+};
+
 static int32_t bin_of(const mlim_nearest* nearest, double value, int axis)
 {
   const double b = value / nearest->bin;
@@ -229,6 +235,49 @@ static double triangle_distance_squared(
     mlim_min(segment_distance_squared(p, b, c), segment_distance_squared(p, c, a)));
 }
 
+static size_t bin_at(const mlim_nearest* nearest, int32_t x, int32_t y, int32_t z)
+{
+  return (size_t)x + (size_t)nearest->bins[0] * ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
+}
+
+/* Each thing leads to the next, which has to wait for it: all points get as far before any goes on. */
+void mlim_nearest_ahead(const mlim_nearest* nearest, const mlim_nearest_points* from)
+{
+  const uint32_t* offsets[AHEAD];
+  for (size_t begin = 0; begin < from->count; begin += AHEAD)
+  {
+    const size_t count = from->count - begin < AHEAD ? from->count - begin : AHEAD;
+    for (size_t k = 0; k < count; ++k)
+    {
+      const double* p = from->points + from->stride * (begin + k);
+      offsets[k] = nearest->offsets + bin_at(nearest, bin_of(nearest, p[0], 0),
+                                        bin_of(nearest, p[1], 1), bin_of(nearest, p[2], 2));
+      mlim_prefetch(offsets[k]);
+    }
+    for (size_t k = 0; k < count; ++k)
+    {
+      mlim_prefetch(nearest->triangles + *offsets[k]);
+    }
+    for (size_t k = 0; k < count; ++k)
+    {
+      for (uint32_t t = *offsets[k]; t < offsets[k][1] && t < *offsets[k] + FIRST; ++t)
+      {
+        mlim_prefetch(nearest->mesh.vertices + 3 * (size_t)nearest->triangles[t]);
+      }
+    }
+    for (size_t k = 0; k < count; ++k)
+    {
+      for (uint32_t t = *offsets[k]; t < offsets[k][1] && t < *offsets[k] + FIRST; ++t)
+      {
+        const int32_t* v = nearest->mesh.vertices + 3 * (size_t)nearest->triangles[t];
+        mlim_prefetch(point_of(nearest, v[0]));
+        mlim_prefetch(point_of(nearest, v[1]));
+        mlim_prefetch(point_of(nearest, v[2]));
+      }
+    }
+  }
+}
+
 /* The triangle that is nearest so far. */
 typedef struct search
 {
@@ -252,8 +301,7 @@ static void look_at_triangle(search* s, int32_t triangle)
 static int look_at_bin(search* s, int32_t x, int32_t y, int32_t z)
 {
   const mlim_nearest* nearest = s->nearest;
-  const size_t bin =
-    (size_t)x + (size_t)nearest->bins[0] * ((size_t)y + (size_t)nearest->bins[1] * (size_t)z);
+  const size_t bin = bin_at(nearest, x, y, z);
   for (size_t k = nearest->offsets[bin]; k < nearest->offsets[bin + 1]; ++k)
   {
     look_at_triangle(s, nearest->triangles[k]);
@@ -347,7 +395,8 @@ int mlim_nearest_is_within(
     low[k] = bin_of(nearest, point[k] - bound, k);
     high[k] = bin_of(nearest, point[k] + bound, k);
   }
-  int is_found = 0;
+  int is_found = look_at_bin(
+    &s, bin_of(nearest, point[0], 0), bin_of(nearest, point[1], 1), bin_of(nearest, point[2], 2));
   for (int32_t z = low[2]; z <= high[2] && !is_found; ++z)
   {
     for (int32_t y = low[1]; y <= high[1] && !is_found; ++y)

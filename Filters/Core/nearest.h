@@ -60,6 +60,17 @@ static inline int32_t* mlim_nearest_hint_at(mlim_nearest_hints* hints, int32_t c
   return &hints->triangles[column % MLIM_NEAREST_HINTS];
 }
 
+/* Points to look from, wherever they are. Borrowed. */
+typedef struct mlim_nearest_points
+{
+  size_t count;
+  const double* points;
+  size_t stride; /* from one point to the next */
+} mlim_nearest_points;
+
+/* Asks for what looking from these points will read. Nothing changes but the time. */
+void mlim_nearest_ahead(const mlim_nearest* nearest, const mlim_nearest_points* from);
+
 /* Distance to the mesh if it is below `limit`, else limit. Stops early at `enough`: the result is
    then at most that. *hint: a triangle that may be near, looked at first, or -1; the one that was found
    takes its place. It changes the time, and what is told below `enough`. */

@@ -78,18 +78,16 @@ static int is_far(const far_job* job, const mlim_crossing* crossing, int32_t* hi
   return !mlim_nearest_is_within(job->nearest, crossing->point, job->bound, hint);
 }
 
-static void visit_crossing(
-  void* user, const int32_t low[3], const int32_t high[3], const mlim_crossing* crossing)
+static void visit_crossing(far_visit* visit, const mlim_grid_crossing* at)
 {
-  far_visit* visit = (far_visit*)user;
   const far_job* job = visit->job;
   far_list* list = visit->list;
-  if (is_small(job, low) || is_small(job, high))
+  if (is_small(job, at->low) || is_small(job, at->high))
   {
     return;
   }
   ++list->seen_count;
-  if (!is_far(job, crossing, mlim_nearest_hint_at(&visit->hints, low[0])))
+  if (!is_far(job, &at->crossing, mlim_nearest_hint_at(&visit->hints, at->low[0])))
   {
     return;
   }
@@ -98,7 +96,20 @@ static void visit_crossing(
     list->has_failed = 1;
     return;
   }
-  list->crossings[list->count++] = *crossing;
+  list->crossings[list->count++] = at->crossing;
+}
+
+static void visit_crossings(void* user, const mlim_grid_crossing* crossings, size_t count)
+{
+  far_visit* visit = (far_visit*)user;
+  const mlim_nearest_points from = { .count = count,
+    .points = crossings->crossing.point,
+    .stride = sizeof *crossings / sizeof(double) };
+  mlim_nearest_ahead(visit->job->nearest, &from);
+  for (size_t k = 0; k < count; ++k)
+  {
+    visit_crossing(visit, &crossings[k]);
+  }
 }
 
 static void look_again(const far_job* job, far_list* list)
@@ -127,7 +138,7 @@ static void far_body(void* data, size_t begin, size_t end)
     }
     far_visit visit = { .job = job, .list = &job->lists[z] };
     mlim_nearest_hints_clear(&visit.hints);
-    mlim_crossings_of_slice(&job->oracle, (int32_t)z, visit_crossing, &visit);
+    mlim_crossings_of_slice(&job->oracle, (int32_t)z, visit_crossings, &visit);
   }
 }
 

@@ -101,6 +101,7 @@ static void test_points(const mlim_mesh* mesh, double side, uint64_t seed)
   const mlim_triangles triangles = mlim_triangles_of(mesh);
   mlim_nearest nearest;
   CHECK(mlim_nearest_create(&triangles, SIZE, side, NULL, &nearest) == MLIM_OK);
+  int32_t hint = -1; /* of the point before, anywhere */
   for (int n = 0; n < 150; ++n)
   {
     double p[3];
@@ -112,14 +113,14 @@ static void test_points(const mlim_mesh* mesh, double side, uint64_t seed)
     }
     const double expected = fmin(brute_distance(mesh, p), 100);
     const double limit = n % 3 == 0 ? 0.3 : 100;
-    const double found = mlim_nearest_distance(&nearest, p, 0, limit);
+    const double found = mlim_nearest_distance(&nearest, p, 0, limit, &hint);
     CHECK_BELOW(fabs(found - fmin(expected, limit)), 1e-6);
     const double enough = 0.4;
-    const double quick = mlim_nearest_distance(&nearest, p, enough, 100);
+    const double quick = mlim_nearest_distance(&nearest, p, enough, 100, &hint);
     CHECK(quick > expected - 1e-6);
     CHECK(expected < enough ? quick < enough + 1e-6 : quick < expected + 1e-6);
-    CHECK(mlim_nearest_is_within(&nearest, p, expected + 1e-5) == (expected < 100));
-    CHECK(expected < 2e-5 || !mlim_nearest_is_within(&nearest, p, expected - 1e-5));
+    CHECK(mlim_nearest_is_within(&nearest, p, expected + 1e-5, &hint) == (expected < 100));
+    CHECK(expected < 2e-5 || !mlim_nearest_is_within(&nearest, p, expected - 1e-5, &hint));
   }
   mlim_nearest_free(&nearest);
 }
