@@ -100,6 +100,11 @@ typedef enum mlim_delaunay_start
   MLIM_START_NEAR         /* the point is located from start on; MLIM_NO_CELL: from the last one */
 } mlim_delaunay_start;
 
+/* The cell that has the point inside, found by walking from a living one near it: the same from any
+   start. MLIM_NO_CELL where the point lies on a facet or out of the hull of the far vertices. */
+mlim_status mlim_delaunay_locate(mlim_delaunay* delaunay, const double point[3], int32_t start,
+  mlim_context* context, int32_t* out);
+
 /* First half of an insertion: the cells that would die. None if the point would be hidden by others or
    would hide one, or is not inside the hull of the far vertices. `start`: a living cell whose power
    sphere may hold the point, or any near it, with `kind` telling which. No cell changes. */

@@ -18,8 +18,9 @@ static mlim_status side_of_facet(
 
 /* Walks from a cell to the one that has the point, MLIM_NO_CELL outside. A step goes through a facet that
    separates the cell from the point. In a weighted Delaunay triangulation no such walk comes back to
-   a cell: the power of the point with respect to the cells grows. */
-static mlim_status locate(mlim_delaunay* d, int32_t start, mlim_context* context, int32_t* out)
+   a cell: the power of the point with respect to the cells grows. *is_inner: no other cell has it. */
+static mlim_status locate(
+  mlim_delaunay* d, int32_t start, mlim_context* context, int32_t* out, int* is_inner)
 {
   int32_t at = start;
   int32_t before = MLIM_NO_CELL;
@@ -27,6 +28,7 @@ static mlim_status locate(mlim_delaunay* d, int32_t start, mlim_context* context
   {
     const mlim_cell* cell = &d->cells[at];
     int exit = -1;
+    *is_inner = 1;
     for (int k = 0; k < 4 && exit < 0; ++k)
     {
       int side = 1;
@@ -39,6 +41,7 @@ static mlim_status locate(mlim_delaunay* d, int32_t start, mlim_context* context
         }
       }
       exit = side < 0 ? k : exit;
+      *is_inner &= side > 0;
     }
     *out = exit < 0 ? at : cell->neighbors[exit];
     if (exit < 0 || *out == MLIM_NO_CELL)
@@ -219,6 +222,18 @@ static mlim_status collect(mlim_delaunay* d, int32_t start, mlim_context* contex
   return MLIM_OK;
 }
 
+mlim_status mlim_delaunay_locate(mlim_delaunay* delaunay, const double point[3], int32_t start,
+  mlim_context* context, int32_t* out)
+{
+  mlim_delaunay* d = delaunay;
+  int is_inner = 0;
+  d->has_zone = 0;
+  memcpy(d->point.at, point, 3 * sizeof *point);
+  const mlim_status status = locate(d, start, context, out, &is_inner);
+  *out = status == MLIM_OK && is_inner ? *out : MLIM_NO_CELL;
+  return status;
+}
+
 mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], double weight,
   int32_t start, mlim_delaunay_start kind, mlim_context* context, mlim_delaunay_zone* out)
 {
@@ -229,7 +244,9 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
   memcpy(d->point.at, point, 3 * sizeof *point);
   d->point.at[3] = weight;
   int32_t from = start == MLIM_NO_CELL ? d->last : start;
-  mlim_status status = kind == MLIM_START_NEAR ? locate(d, from, context, &from) : MLIM_OK;
+  int is_inner;
+  mlim_status status =
+    kind == MLIM_START_NEAR ? locate(d, from, context, &from, &is_inner) : MLIM_OK;
   if (status != MLIM_OK || from == MLIM_NO_CELL)
   {
     return status;

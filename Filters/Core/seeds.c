@@ -30,8 +30,88 @@ static int cross_grid_edge(
   return mlim_oracle_crossings(&complex->oracle, start, end, 1, out) == 1;
 }
 
-mlim_status mlim_seeds_insert(mlim_complex* complex, const mlim_crossing* crossing, double distance,
-  mlim_context* context, size_t* count)
+mlim_status mlim_seeds_start(
+  mlim_complex* complex, double distance, mlim_context* context, mlim_seeds* out)
+{
+  *out = (mlim_seeds){ .complex = complex, .distance = distance };
+  return mlim_nearby_create(complex, distance, context, &out->nearby);
+}
+
+void mlim_seeds_free(mlim_seeds* seeds)
+{
+  mlim_nearby_free(&seeds->nearby);
+  *seeds = (mlim_seeds){ 0 };
+}
+
+static int is_too_near(const mlim_seeds* seeds, const double point[3], int32_t vertex)
+{
+  const mlim_vertex* v = &seeds->complex->vertices[vertex];
+  return mlim_distance_squared(v->point, point) - v->weight < seeds->distance * seeds->distance;
+}
+
+/* A vertex of the cells that is too near; -1: none. */
+static int32_t find_too_near(
+  const mlim_seeds* seeds, const double point[3], const int32_t* cells, size_t count)
+{
+  for (size_t c = 0; c < count; ++c)
+  {
+    const int32_t* vertices = seeds->complex->cells[cells[c]].vertices;
+    for (int k = 0; k < 4; ++k)
+    {
+      if (is_too_near(seeds, point, vertices[k]))
+      {
+        return vertices[k];
+      }
+    }
+  }
+  return -1;
+}
+
+/* Inserts the vertex unless it is too near to another. Most seeds are, and one vertex suffices to tell: the
+   block's, which was too near to the last one there, or one of the cell's. */
+static mlim_status try_vertex(
+  mlim_seeds* seeds, const mlim_vertex* vertex, mlim_context* context, size_t* count)
+{
+  mlim_complex* complex = seeds->complex;
+  int32_t* block = mlim_nearby_at(&seeds->nearby, vertex->point);
+  if (*block >= 0 && is_too_near(seeds, vertex->point, *block))
+  {
+    return MLIM_OK;
+  }
+  const int32_t last = complex->vertices[complex->vertex_count - 1].cell;
+  const int32_t start = *block >= 0 ? complex->vertices[*block].cell : last;
+  int32_t cell;
+  mlim_status status =
+    mlim_delaunay_locate(complex->delaunay, vertex->point, start, context, &cell);
+  int32_t near = cell == MLIM_NO_CELL ? -1 : find_too_near(seeds, vertex->point, &cell, 1);
+  int is_found = 0;
+  if (status == MLIM_OK && near < 0)
+  {
+    /* A point on a facet is in several cells. That of a walk from the vertex before it is taken, from
+       wherever the block would start: what is inserted depends on nothing else. */
+    status =
+      cell == MLIM_NO_CELL
+        ? mlim_complex_probe(complex, vertex, last, MLIM_START_NEAR, context, &is_found)
+        : mlim_complex_probe(complex, vertex, cell, MLIM_START_IN_CONFLICT, context, &is_found);
+  }
+  if (!is_found)
+  {
+    *block = near < 0 ? *block : near;
+    return status;
+  }
+  near = find_too_near(seeds, vertex->point, complex->zone.cells, complex->zone.count);
+  if (near < 0)
+  {
+    status = mlim_complex_commit(complex, context);
+    near = status == MLIM_OK ? (int32_t)complex->vertex_count - 1 : *block;
+    *count += status == MLIM_OK;
+  }
+  *block = near;
+  return status;
+}
+
+mlim_status mlim_seeds_insert(
+  mlim_seeds* seeds, const mlim_crossing* crossing, mlim_context* context, size_t* count)
 {
   const int is_up = crossing->from < crossing->to;
   mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE,
@@ -39,20 +119,8 @@ mlim_status mlim_seeds_insert(mlim_complex* complex, const mlim_crossing* crossi
     .sheet = { .low = is_up ? crossing->from : crossing->to,
       .high = is_up ? crossing->to : crossing->from,
       .face = crossing->face } };
-  for (int k = 0; k < 3; ++k)
-  {
-    vertex.point[k] = crossing->point[k];
-  }
-  int is_found;
-  const int32_t near = complex->vertices[complex->vertex_count - 1].cell;
-  mlim_status status =
-    mlim_complex_probe(complex, &vertex, near, MLIM_START_NEAR, context, &is_found);
-  if (is_found && mlim_complex_power(complex) >= distance * distance)
-  {
-    status = mlim_complex_commit(complex, context);
-    *count += status == MLIM_OK;
-  }
-  return status;
+  mlim_copy(crossing->point, vertex.point);
+  return try_vertex(seeds, &vertex, context, count);
 }
 
 mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_components* components,
@@ -60,8 +128,9 @@ mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_component
 {
   *count = 0;
   const double distance = COMPONENT_SEED_DISTANCE * mlim_field_grid_of(complex->oracle.field)->unit;
-  mlim_status status = MLIM_OK;
-  for (size_t c = 0; c < components->count; ++c)
+  mlim_seeds seeds;
+  mlim_status status = mlim_seeds_start(complex, distance, context, &seeds);
+  for (size_t c = 0; c < components->count && status == MLIM_OK; ++c)
   {
     const mlim_component* component = &components->components[c];
     if (component->voxel_count < min_voxels || (is_wanted != NULL && !is_wanted[c]))
@@ -73,10 +142,11 @@ mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_component
       mlim_crossing crossing;
       if (cross_grid_edge(complex, component->extremes[side], side, &crossing))
       {
-        status = mlim_seeds_insert(complex, &crossing, distance, context, count);
+        status = mlim_seeds_insert(&seeds, &crossing, context, count);
       }
     }
   }
+  mlim_seeds_free(&seeds);
   return status;
 }
 
@@ -155,9 +225,10 @@ static mlim_sheet sheet_beyond(const mlim_field* field, const int32_t point[3], 
     .face = is_out ? side : -1 };
 }
 
-static mlim_status seed_point(mlim_complex* complex, const int32_t point[3], double distance,
-  sheet_list* list, mlim_context* context, size_t* count)
+static mlim_status seed_point(
+  mlim_seeds* seeds, const int32_t point[3], sheet_list* list, mlim_context* context, size_t* count)
 {
+  const mlim_complex* complex = seeds->complex;
   for (int side = 0; side < 6; ++side)
   {
     mlim_crossing crossing;
@@ -174,7 +245,7 @@ static mlim_status seed_point(mlim_complex* complex, const int32_t point[3], dou
       continue;
     }
     const size_t before = *count;
-    const mlim_status status = mlim_seeds_insert(complex, &crossing, distance, context, count);
+    const mlim_status status = mlim_seeds_insert(seeds, &crossing, context, count);
     if (status != MLIM_OK)
     {
       return status;
@@ -185,7 +256,7 @@ static mlim_status seed_point(mlim_complex* complex, const int32_t point[3], dou
 }
 
 static mlim_status seed_block(
-  mlim_complex* complex, const block* b, double distance, mlim_context* context, size_t* count)
+  mlim_seeds* seeds, const block* b, mlim_context* context, size_t* count)
 {
   sheet_list list = { .count = 0 };
   int32_t p[3];
@@ -195,11 +266,43 @@ static mlim_status seed_block(
     {
       for (p[0] = b->low[0]; p[0] < b->high[0]; ++p[0])
       {
-        if (is_inner(complex->oracle.field, p))
+        if (is_inner(seeds->complex->oracle.field, p))
         {
           continue;
         }
-        const mlim_status status = seed_point(complex, p, distance, &list, context, count);
+        const mlim_status status = seed_point(seeds, p, &list, context, count);
+        if (status != MLIM_OK)
+        {
+          return status;
+        }
+      }
+    }
+  }
+  return MLIM_OK;
+}
+
+/* Blocks of so many grid points along each axis. */
+static mlim_status seed_blocks(
+  mlim_seeds* seeds, const int32_t side[3], double done, mlim_context* context, size_t* count)
+{
+  const int32_t* dims = mlim_field_grid_of(seeds->complex->oracle.field)->dims;
+  block b;
+  for (b.low[2] = 0; b.low[2] < dims[2]; b.low[2] += side[2])
+  {
+    const mlim_status going = mlim_progress(context, MLIM_STAGE_SURFACE, done);
+    if (going != MLIM_OK)
+    {
+      return going;
+    }
+    for (b.low[1] = 0; b.low[1] < dims[1]; b.low[1] += side[1])
+    {
+      for (b.low[0] = 0; b.low[0] < dims[0]; b.low[0] += side[0])
+      {
+        for (int k = 0; k < 3; ++k)
+        {
+          b.high[k] = dims[k] - b.low[k] > side[k] ? b.low[k] + side[k] : dims[k];
+        }
+        const mlim_status status = seed_block(seeds, &b, context, count);
         if (status != MLIM_OK)
         {
           return status;
@@ -216,38 +319,14 @@ mlim_status mlim_seeds_on_sheets(
   *count = 0;
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
   int32_t side[3];
-  int32_t blocks[3];
   for (int k = 0; k < 3; ++k)
   {
     const double points = mlim_min(ceil(BLOCK_SIDE * distance / grid->spacing[k]), grid->dims[k]);
     side[k] = points < 2 ? 2 : (int32_t)points;
-    blocks[k] = (grid->dims[k] + side[k] - 1) / side[k];
   }
-  int32_t at[3];
-  for (at[2] = 0; at[2] < blocks[2]; ++at[2])
-  {
-    const mlim_status going = mlim_progress(context, MLIM_STAGE_SURFACE, done);
-    if (going != MLIM_OK)
-    {
-      return going;
-    }
-    for (at[1] = 0; at[1] < blocks[1]; ++at[1])
-    {
-      for (at[0] = 0; at[0] < blocks[0]; ++at[0])
-      {
-        block b;
-        for (int k = 0; k < 3; ++k)
-        {
-          b.low[k] = at[k] * side[k];
-          b.high[k] = b.low[k] + side[k] < grid->dims[k] ? b.low[k] + side[k] : grid->dims[k];
-        }
-        const mlim_status status = seed_block(complex, &b, distance, context, count);
-        if (status != MLIM_OK)
-        {
-          return status;
-        }
-      }
-    }
-  }
-  return MLIM_OK;
+  mlim_seeds seeds;
+  mlim_status status = mlim_seeds_start(complex, distance, context, &seeds);
+  status = status == MLIM_OK ? seed_blocks(&seeds, side, done, context, count) : status;
+  mlim_seeds_free(&seeds);
+  return status;
 }

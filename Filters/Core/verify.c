@@ -151,18 +151,20 @@ static mlim_status insert_far(const mlim_verification* v, mlim_context* context,
      left for the later ones, which look closer. */
   const double distance =
     mlim_max(options->smallest_distance, 0.25 * options->facet_size * pow(0.5, v->round));
-  mlim_status status = MLIM_OK;
+  mlim_seeds seeds;
+  mlim_status status = mlim_seeds_start(complex, distance, context, &seeds);
   for (size_t z = 0; z < slices && status == MLIM_OK; ++z)
   {
     for (size_t k = 0; k < v->far[z].count && status == MLIM_OK; ++k)
     {
-      status = mlim_seeds_insert(complex, &v->far[z].crossings[k], distance, context, count);
+      status = mlim_seeds_insert(&seeds, &v->far[z].crossings[k], context, count);
       if (status == MLIM_OK && k % 256 == 255)
       {
         status = mlim_refine_report(v->refinement, context);
       }
     }
   }
+  mlim_seeds_free(&seeds);
   return status;
 }
 

@@ -485,6 +485,43 @@ static void test_starts(void)
   mlim_delaunay_free(delaunay);
 }
 
+/* The cell of its centroid is found from anywhere, that of a point on a facet, edge or vertex from nowhere. */
+static void test_locate(void)
+{
+  static cloud c;
+  mlim_delaunay* delaunay = start(&c);
+  state = 6;
+  add_random(delaunay, &c, 300, 0);
+  const mlim_delaunay_cells all = mlim_delaunay_all(delaunay);
+  int32_t from = 0;
+  for (size_t id = 0; id < all.count; ++id)
+  {
+    if (all.cells[id].vertices[0] < 0)
+    {
+      continue;
+    }
+    from = id % 16 == 0 ? (int32_t)id : from;
+    for (int k = 0; k < 4; ++k)
+    {
+      /* Exact: the points are whole numbers. */
+      static const double parts[4][4] = { { 1 }, { 0.5, 0.5 }, { 0.25, 0.25, 0.5 },
+        { 0.25, 0.25, 0.25, 0.25 } };
+      double at[3] = { 0, 0, 0 };
+      for (int n = 0; n < 4; ++n)
+      {
+        for (int j = 0; j < 3; ++j)
+        {
+          at[j] += parts[k][n] * (double)c.points[all.cells[id].vertices[n]][j];
+        }
+      }
+      int32_t cell;
+      CHECK(mlim_delaunay_locate(delaunay, at, from, NULL, &cell) == MLIM_OK);
+      CHECK(cell == (k == 3 ? (int32_t)id : MLIM_NO_CELL));
+    }
+  }
+  mlim_delaunay_free(delaunay);
+}
+
 /* The same insertions give the same bytes, whatever goes on beside them. */
 static void test_repeat(void)
 {
@@ -530,6 +567,7 @@ int main(void)
   test_refused();
   test_hull();
   test_starts();
+  test_locate();
   test_repeat();
   return check_result();
 }
