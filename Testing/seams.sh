@@ -25,7 +25,7 @@ order='
 3 field         plateau winners field clearance field_build options components
 4 oracle        oracle crossings
 4 curves        network grow curve_face curve_cell crease clean corner curves
-5 balls         radius_map span balls
+5 balls         pieces radius_map span balls
 5 triangulation power_sphere predicates delaunay
 6 criteria      complex dual ahead boundary records sides wedge criteria disk
 7 refinement    queue nearby seeds known bends partner refine tidy pinch spots zone box cells

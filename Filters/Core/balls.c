@@ -93,12 +93,13 @@ typedef struct map_curve
 {
   const mlim_radius_map* map;
   size_t curve;
+  size_t near; /* the sample asked for last */
 } map_curve;
 
-static double radius_on_curve(const void* user, double arc)
+static double radius_on_curve(void* user, double arc)
 {
-  const map_curve* on = user;
-  return mlim_radius_map_radius(on->map, on->curve, arc);
+  map_curve* on = (map_curve*)user;
+  return mlim_radius_map_radius(on->map, on->curve, arc, &on->near);
 }
 
 static mlim_status cover_curve(covering* work, size_t curve)
@@ -107,7 +108,7 @@ static mlim_status cover_curve(covering* work, size_t curve)
   const int32_t* ends = map->ends + 2 * curve;
   const size_t first = work->list.balls.ball_count;
   const size_t sample_count = map->offsets[curve + 1] - map->offsets[curve];
-  const map_curve on = { .map = map, .curve = curve };
+  map_curve on = { .map = map, .curve = curve };
   mlim_span span = { .length = map->arcs[map->offsets[curve + 1] - 1],
     .is_closed = ends[0] < 0,
     .min_count = 1,

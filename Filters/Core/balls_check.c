@@ -14,6 +14,8 @@ static const double OVERLAP_MARGIN = 0.1;
 static const double CENTER_MARGIN = 0.05;
 /* Balls that are not neighbours are apart by this part of the distance of their centres. */
 static const double DISJOINT_MARGIN = 0.01;
+/* Below the square of what is left of 1: nearly all pairs are seen to be apart without a root. */
+static const double WELL_APART = 0.98;
 /* Part of edge_size and facet_distance by which rounding may exceed them. */
 static const double ROUNDING = 1e-6;
 
@@ -111,6 +113,11 @@ static mlim_status examine_others(const examination* work)
          j = mlim_point_grid_next(&grid.points, &walk))
     {
       const double reach = balls->radii[i] + balls->radii[j];
+      if (reach * reach <
+          WELL_APART * mlim_distance_squared(balls->centers + 3 * (size_t)j, center))
+      {
+        continue;
+      }
       const double d = center_distance(balls, (int32_t)i, j);
       int is_neighbour =
         reach < (1 - DISJOINT_MARGIN) * d || is_contact(balls, i) || is_contact(balls, (size_t)j);

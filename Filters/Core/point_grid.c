@@ -82,12 +82,12 @@ static int advance(mlim_point_walk* walk)
 {
   for (int k = 0; k < 3; ++k)
   {
-    if (walk->cube[k] < walk->high[k])
+    if (walk->cube[k] < walk->range.high[k])
     {
       ++walk->cube[k];
       return 1;
     }
-    walk->cube[k] = walk->low[k];
+    walk->cube[k] = walk->range.low[k];
   }
   return 0;
 }
@@ -105,15 +105,21 @@ static int32_t settle(const mlim_point_grid* grid, mlim_point_walk* walk)
   return grid->entries[walk->entry].item;
 }
 
-int32_t mlim_point_grid_first(
-  const mlim_point_grid* grid, const double center[3], double radius, mlim_point_walk* walk)
+void mlim_point_grid_range(
+  const mlim_point_grid* grid, const double center[3], double radius, mlim_point_range* out)
 {
   for (int k = 0; k < 3; ++k)
   {
-    walk->low[k] = cube_of(grid, center[k] - radius);
-    walk->high[k] = cube_of(grid, center[k] + radius);
-    walk->cube[k] = walk->low[k];
+    out->low[k] = cube_of(grid, center[k] - radius);
+    out->high[k] = cube_of(grid, center[k] + radius);
   }
+}
+
+int32_t mlim_point_grid_first(
+  const mlim_point_grid* grid, const double center[3], double radius, mlim_point_walk* walk)
+{
+  mlim_point_grid_range(grid, center, radius, &walk->range);
+  memcpy(walk->cube, walk->range.low, sizeof walk->cube);
   walk->entry = find_in_chain(grid, walk, grid->slots[slot_of(grid, walk->cube)]);
   return settle(grid, walk);
 }

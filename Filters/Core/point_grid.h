@@ -22,11 +22,17 @@ typedef struct mlim_point_entry
   int32_t next;
 } mlim_point_entry;
 
-/* A walk over the cubes near a place. */
-typedef struct mlim_point_walk
+/* The cubes that a ball touches, from a lowest to a highest one. */
+typedef struct mlim_point_range
 {
   int64_t low[3];
   int64_t high[3];
+} mlim_point_range;
+
+/* A walk over them. */
+typedef struct mlim_point_walk
+{
+  mlim_point_range range;
   int64_t cube[3];
   int32_t entry;
 } mlim_point_walk;
@@ -36,6 +42,10 @@ mlim_status mlim_point_grid_create(double cube_size, size_t capacity, mlim_point
 void mlim_point_grid_free(mlim_point_grid* grid);
 
 void mlim_point_grid_add(mlim_point_grid* grid, const double point[3], int32_t item);
+
+/* Walks of equal ranges meet the same items in the same order. */
+void mlim_point_grid_range(
+  const mlim_point_grid* grid, const double center[3], double radius, mlim_point_range* out);
 
 /* Items in all cubes that the ball touches, -1 at the end; some are farther than the radius. The
    order depends on positions and the order of adding only. */

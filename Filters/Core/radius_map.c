@@ -1,6 +1,6 @@
 #include "radius_map.h"
 #include "memory.h"
-#include "point_grid.h"
+#include "pieces.h"
 #include "vector.h"
 
 #include <math.h>
@@ -223,99 +223,96 @@ static double distance_to_sample_piece(
   return mlim_distance(point, nearest);
 }
 
-/* Pieces between samples in a grid by their first sample, and the curve of each. */
-typedef struct piece_index
+static void limit_by_piece(
+  mlim_radius_map* map, const mlim_pieces* pieces, size_t curve, size_t sample, size_t piece)
 {
-  mlim_point_grid grid;
-  int32_t* curves;
-  double reach; /* of a search: beyond it nothing is a limit */
-} piece_index;
-
-static void piece_index_free(piece_index* index)
-{
-  mlim_point_grid_free(&index->grid);
-  mlim_release(index->curves);
+  double arc;
+  const double distance = distance_to_sample_piece(map, map->points + 3 * sample, piece, &arc);
+  const double radius = mlim_max(DISTANCE_SHARE * distance, map->floor_radius);
+  if (radius >= map->limits[sample])
+  {
+    return;
+  }
+  switch (relate(map, curve, map->arcs[sample], (size_t)pieces->curves[piece], arc, distance))
+  {
+    case UNRELATED:
+      map->limits[sample] = radius;
+      break;
+    case ABREAST_OF_JUNCTION:
+      map->wedges[sample] = mlim_min(map->wedges[sample], radius);
+      break;
+    case IN_LINE:
+      break;
+  }
 }
 
-static mlim_status piece_index_create(const mlim_radius_map* map, double step, piece_index* index)
+/* Pieces that start too far away to lower the limit are left out; the last hundredth of a step is for
+   rounding. */
+static void limit_by_list(mlim_radius_map* map, const mlim_pieces* pieces, size_t curve,
+  size_t sample, const mlim_piece_list* list)
 {
-  const double reach = map->first_radius / DISTANCE_SHARE + step;
-  index->reach = reach;
-  index->curves = mlim_allocate(map->sample_count, sizeof(int32_t));
-  if (!index->curves || mlim_point_grid_create(0.5 * reach, map->sample_count, &index->grid))
+  const double* point = map->points + 3 * sample;
+  for (size_t k = 0; k < list->count; ++k)
   {
-    return MLIM_OUT_OF_MEMORY;
-  }
-  for (size_t c = 0; c < map->curves->curve_count; ++c)
-  {
-    for (size_t s = map->offsets[c]; s + 1 < map->offsets[c + 1]; ++s)
+    const double far = map->limits[sample] / DISTANCE_SHARE + 1.01 * pieces->step;
+    if (mlim_distance_squared(list->starts[k], point) < far * far)
     {
-      index->curves[s] = (int32_t)c;
-      mlim_point_grid_add(&index->grid, map->points + 3 * s, (int32_t)s);
+      limit_by_piece(map, pieces, curve, sample, (size_t)list->pieces[k]);
     }
   }
-  return MLIM_OK;
 }
 
-static void limit_sample(
-  mlim_radius_map* map, const piece_index* index, size_t curve, size_t sample)
+static void limit_by_search(
+  mlim_radius_map* map, const mlim_pieces* pieces, size_t curve, size_t sample)
 {
   const double* point = map->points + 3 * sample;
   mlim_point_walk walk;
-  for (int32_t s = mlim_point_grid_first(&index->grid, point, index->reach, &walk); s >= 0;
-       s = mlim_point_grid_next(&index->grid, &walk))
+  for (int32_t s = mlim_point_grid_first(&pieces->grid, point, pieces->reach, &walk); s >= 0;
+       s = mlim_point_grid_next(&pieces->grid, &walk))
   {
-    double arc;
-    const double distance = distance_to_sample_piece(map, point, (size_t)s, &arc);
-    const double radius = mlim_max(DISTANCE_SHARE * distance, map->floor_radius);
-    if (radius >= map->limits[sample])
-    {
-      continue;
-    }
-    switch (relate(map, curve, map->arcs[sample], (size_t)index->curves[s], arc, distance))
-    {
-      case UNRELATED:
-        map->limits[sample] = radius;
-        break;
-      case ABREAST_OF_JUNCTION:
-        map->wedges[sample] = mlim_min(map->wedges[sample], radius);
-        break;
-      case IN_LINE:
-        break;
-    }
+    limit_by_piece(map, pieces, curve, sample, (size_t)s);
   }
 }
 
 typedef struct limit_job
 {
   mlim_radius_map* map;
-  const piece_index* index;
+  const mlim_pieces* pieces;
 } limit_job;
 
 /* Each sample has limits of its own. */
 static void limit_body(void* data, size_t begin, size_t end)
 {
   const limit_job* job = (const limit_job*)data;
+  mlim_radius_map* map = job->map;
   size_t curve = 0;
+  mlim_piece_list list = { .is_listed = 0 };
   for (size_t s = begin; s < end; ++s)
   {
-    while (job->map->offsets[curve + 1] <= s)
+    while (map->offsets[curve + 1] <= s)
     {
       ++curve;
     }
-    limit_sample(job->map, job->index, curve, s);
+    if (mlim_pieces_list(job->pieces, map->points + 3 * s, &list))
+    {
+      limit_by_list(map, job->pieces, curve, s, &list);
+    }
+    else
+    {
+      limit_by_search(map, job->pieces, curve, s);
+    }
   }
 }
 
 /* Curves that do not end at the junction limit its ball. */
-static void limit_junction(mlim_radius_map* map, const piece_index* index, size_t junction)
+static void limit_junction(mlim_radius_map* map, const mlim_pieces* pieces, size_t junction)
 {
   const double* point = map->curves->points + 3 * (size_t)map->curves->junction_points[junction];
   mlim_point_walk walk;
-  for (int32_t s = mlim_point_grid_first(&index->grid, point, index->reach, &walk); s >= 0;
-       s = mlim_point_grid_next(&index->grid, &walk))
+  for (int32_t s = mlim_point_grid_first(&pieces->grid, point, pieces->reach, &walk); s >= 0;
+       s = mlim_point_grid_next(&pieces->grid, &walk))
   {
-    const int32_t* ends = map->ends + 2 * (size_t)index->curves[s];
+    const int32_t* ends = map->ends + 2 * (size_t)pieces->curves[s];
     if (ends[0] != (int32_t)junction && ends[1] != (int32_t)junction)
     {
       double arc;
@@ -348,13 +345,18 @@ mlim_status mlim_radius_map_create(const mlim_curves* curves, const mlim_options
   mlim_radius_map map = { .curves = curves,
     .first_radius = options->ball_radius_scale * options->edge_size / 1.5,
     .floor_radius = FLOOR_SHARE * options->smallest_distance };
-  piece_index index = { 0 };
+  mlim_pieces pieces = { 0 };
   mlim_status status = allocate_samples(&map, step);
   if (!status && map.sample_count > 0)
   {
     place_samples(&map, step);
     status = find_ends(&map);
-    status = status ? status : piece_index_create(&map, step, &index);
+    const mlim_piece_source source = { .points = map.points,
+      .offsets = map.offsets,
+      .curve_count = curves->curve_count,
+      .step = step,
+      .reach = map.first_radius / DISTANCE_SHARE + step };
+    status = status ? status : mlim_pieces_create(&source, &pieces);
   }
   if (status)
   {
@@ -366,7 +368,7 @@ mlim_status mlim_radius_map_create(const mlim_curves* curves, const mlim_options
   }
   status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = map.sample_count,
                                           .body = limit_body,
-                                          .job = &(limit_job){ .map = &map, .index = &index },
+                                          .job = &(limit_job){ .map = &map, .pieces = &pieces },
                                           .stage = MLIM_STAGE_BALLS,
                                           .step = SAMPLES_A_PIECE });
   if (status)
@@ -375,14 +377,14 @@ mlim_status mlim_radius_map_create(const mlim_curves* curves, const mlim_options
   }
   for (size_t j = 0; j < curves->junction_count; ++j)
   {
-    limit_junction(&map, &index, j);
+    limit_junction(&map, &pieces, j);
   }
   mlim_radius_map_grade(&map);
   *out = map;
   map = (mlim_radius_map){ 0 };
 
 done:
-  piece_index_free(&index);
+  mlim_pieces_free(&pieces);
   mlim_radius_map_free(&map);
   return status;
 }
@@ -452,11 +454,30 @@ void mlim_radius_map_grade(mlim_radius_map* map)
   }
 }
 
-/* The sample at or before a length along a curve. */
-static size_t find_sample(const mlim_radius_map* map, size_t curve, double arc, double* part)
+/* Whether a sample is the one at or before a length, by the test that find_sample ends with. */
+static int is_at(const mlim_radius_map* map, size_t curve, size_t sample, double arc)
+{
+  const size_t first = map->offsets[curve];
+  const size_t last = map->offsets[curve + 1] - 1;
+  return sample >= first && sample < last && (sample == first || map->arcs[sample] <= arc) &&
+         (sample + 1 == last || map->arcs[sample + 1] > arc);
+}
+
+/* The sample at or before a length along a curve, from the whole curve or one of two samples. */
+static size_t find_sample(
+  const mlim_radius_map* map, size_t curve, double arc, size_t near, double* part)
 {
   size_t low = map->offsets[curve];
   size_t high = map->offsets[curve + 1] - 1;
+  for (size_t s = near; s <= near + 1; ++s)
+  {
+    if (is_at(map, curve, s, arc))
+    {
+      low = s;
+      high = s + 1;
+      break;
+    }
+  }
   while (high - low > 1)
   {
     const size_t middle = low + (high - low) / 2;
@@ -474,10 +495,11 @@ static size_t find_sample(const mlim_radius_map* map, size_t curve, double arc, 
   return low;
 }
 
-double mlim_radius_map_radius(const mlim_radius_map* map, size_t curve, double arc)
+double mlim_radius_map_radius(const mlim_radius_map* map, size_t curve, double arc, size_t* near)
 {
   double part;
-  const size_t s = find_sample(map, curve, arc, &part);
+  const size_t s = find_sample(map, curve, arc, *near, &part);
+  *near = s;
   const double low = mlim_min(map->limits[s], map->wedges[s]);
   const double high = mlim_min(map->limits[s + 1], map->wedges[s + 1]);
   return mlim_max(low + part * (high - low), map->floor_radius);
@@ -486,7 +508,7 @@ double mlim_radius_map_radius(const mlim_radius_map* map, size_t curve, double a
 void mlim_radius_map_point(const mlim_radius_map* map, size_t curve, double arc, double out[3])
 {
   double part;
-  const size_t s = find_sample(map, curve, arc, &part);
+  const size_t s = find_sample(map, curve, arc, map->offsets[curve], &part);
   mlim_interpolate(map->points + 3 * s, map->points + 3 * (s + 1), part, out);
 }
 
@@ -494,7 +516,7 @@ int mlim_radius_map_lower(
   mlim_radius_map* map, mlim_radius_limit which, size_t curve, double arc, double radius)
 {
   double part;
-  const size_t s = find_sample(map, curve, arc, &part);
+  const size_t s = find_sample(map, curve, arc, map->offsets[curve], &part);
   double* limits = which == MLIM_LIMIT_WEDGE ? map->wedges : map->limits;
   const double limit = mlim_max(radius, map->floor_radius);
   int has_changed = 0;

@@ -31,8 +31,9 @@ void mlim_radius_map_free(mlim_radius_map* map);
 /* Restores the grading after limits were lowered. */
 void mlim_radius_map_grade(mlim_radius_map* map);
 
-/* The radius at a length along a curve, and the point there. */
-double mlim_radius_map_radius(const mlim_radius_map* map, size_t curve, double arc);
+/* The radius at a length along a curve, and the point there. *near: a sample where to look first, any number
+   at the beginning; becomes the one found. */
+double mlim_radius_map_radius(const mlim_radius_map* map, size_t curve, double arc, size_t* near);
 void mlim_radius_map_point(const mlim_radius_map* map, size_t curve, double arc, double out[3]);
 
 typedef enum mlim_radius_limit

@@ -8,7 +8,7 @@
 #include "status.h"
 
 /* Largest radius at a length along the curve, > 0; grows by less than 1 per length. */
-typedef double (*mlim_span_radius)(const void* user, double arc);
+typedef double (*mlim_span_radius)(void* user, double arc);
 
 typedef struct mlim_span
 {
@@ -18,7 +18,7 @@ typedef struct mlim_span
   size_t min_count;    /* balls between the ends, or in all if closed; at least 1 */
   size_t step_count;   /* of the integral; > 0 */
   mlim_span_radius radius;
-  const void* user; /* borrowed; handed to radius */
+  void* user; /* borrowed; handed to radius */
 } mlim_span;
 
 /* The balls between the ends, in order. All 0 is a valid start; reused from span to span. */
