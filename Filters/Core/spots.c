@@ -1,5 +1,6 @@
 #include "spots.h"
 
+#include "ahead.h"
 #include "ball_grid.h"
 #include "faces.h"
 #include "label_sets.h"
@@ -82,6 +83,7 @@ static mlim_status gather_points(spotting* s, mlim_context* context)
   for (size_t f = 1; f < complex->facet_count; ++f)
   {
     const mlim_facet* facet = &complex->facets[f];
+    mlim_ahead_of_record(complex, f, complex->facet_count);
     if (f % LOOK_EVERY == 0 &&
         mlim_progress(context, MLIM_STAGE_SURFACE, s->refinement->progress) != MLIM_OK)
     {
