@@ -14,20 +14,30 @@ static const double COMPONENT_SEED_DISTANCE = 0.3;
    twice the side, which refinement fills. */
 static const double BLOCK_SIDE = 2;
 
-/* The crossing on the way from a grid point to the next one in a direction, or out of the box. */
-static int cross_grid_edge(
-  const mlim_complex* complex, const int32_t point[3], int side, mlim_crossing* out)
+/* The way from a grid point to the next one in a direction, or out of the box. */
+typedef struct grid_edge
+{
+  double ends[2][3];
+} grid_edge;
+
+static grid_edge edge_from(const mlim_complex* complex, const int32_t point[3], int side)
 {
   const mlim_field_grid* grid = mlim_field_grid_of(complex->oracle.field);
-  double start[3];
-  double end[3];
+  const int axis = side >> 1;
+  grid_edge edge;
   for (int k = 0; k < 3; ++k)
   {
-    start[k] = point[k] * grid->spacing[k];
-    end[k] = start[k];
+    edge.ends[0][k] = point[k] * grid->spacing[k];
+    edge.ends[1][k] = edge.ends[0][k];
   }
-  end[side >> 1] = (point[side >> 1] + (side & 1 ? 1 : -1)) * grid->spacing[side >> 1];
-  return mlim_oracle_crossings(&complex->oracle, start, end, 1, out) == 1;
+  edge.ends[1][axis] = (point[axis] + (side & 1 ? 1 : -1)) * grid->spacing[axis];
+  return edge;
+}
+
+/* The first crossing of an edge; 0: there is none. */
+static int cross_edge(const mlim_complex* complex, const grid_edge* edge, mlim_crossing* out)
+{
+  return mlim_oracle_crossings(&complex->oracle, edge->ends[0], edge->ends[1], 1, out) == 1;
 }
 
 mlim_status mlim_seeds_start(
@@ -47,6 +57,14 @@ static int is_too_near(const mlim_seeds* seeds, const double point[3], int32_t v
 {
   const mlim_vertex* v = &seeds->complex->vertices[vertex];
   return mlim_distance_squared(v->point, point) - v->weight < seeds->distance * seeds->distance;
+}
+
+/* Whether wherever an edge is crossed that is too near to the vertex of its block: what is near is a ball. */
+static int is_edge_too_near(const mlim_seeds* seeds, const grid_edge* edge)
+{
+  const int32_t vertex = *mlim_nearby_at(&seeds->nearby, edge->ends[0]);
+  return vertex >= 0 && is_too_near(seeds, edge->ends[0], vertex) &&
+         is_too_near(seeds, edge->ends[1], vertex);
 }
 
 /* A vertex of the cells that is too near; -1: none. */
@@ -140,7 +158,8 @@ mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_component
     for (int side = 0; side < 6 && status == MLIM_OK; ++side)
     {
       mlim_crossing crossing;
-      if (cross_grid_edge(complex, component->extremes[side], side, &crossing))
+      const grid_edge edge = edge_from(complex, component->extremes[side], side);
+      if (cross_edge(complex, &edge, &crossing))
       {
         status = mlim_seeds_insert(&seeds, &crossing, context, count);
       }
@@ -154,12 +173,15 @@ mlim_status mlim_seeds_on_components(mlim_complex* complex, const mlim_component
 
 typedef struct block
 {
+  const uint16_t* labels; /* of all grid points */
+  const int32_t* dims;
   int32_t low[3];
   int32_t high[3]; /* past the last grid point */
 } block;
 
 enum
 {
+  RUN = 8,         /* points that are looked at together */
   MAX_SHEETS = 32, /* of one block; further ones wait for refinement */
   MAX_TRIES =
     8 /* crossings of a sheet that are too near to a vertex before the block gives it up */
@@ -193,15 +215,15 @@ static size_t place_of(sheet_list* list, const mlim_sheet* sheet)
 }
 
 /* Whether a point and its next ones along the axes have one label, as nearly all have. */
-static int is_inner(const mlim_field* field, const int32_t point[3])
+static int is_inner(const block* b, const int32_t point[3])
 {
-  const int32_t* dims = mlim_field_grid_of(field)->dims;
-  const size_t steps[3] = { 1, (size_t)dims[0], (size_t)dims[0] * (size_t)dims[1] };
-  const uint16_t* label = mlim_field_point_labels(field) + (size_t)point[0] +
-                          steps[1] * (size_t)point[1] + steps[2] * (size_t)point[2];
+  const size_t row = (size_t)b->dims[0];
+  const size_t steps[3] = { 1, row, row * (size_t)b->dims[1] };
+  const uint16_t* label =
+    b->labels + (size_t)point[0] + row * (size_t)point[1] + steps[2] * (size_t)point[2];
   for (int k = 0; k < 3; ++k)
   {
-    if (point[k] == 0 || point[k] + 1 == dims[k] || label[steps[k]] != *label)
+    if (point[k] == 0 || point[k] + 1 == b->dims[k] || label[steps[k]] != *label)
     {
       return 0;
     }
@@ -209,38 +231,66 @@ static int is_inner(const mlim_field* field, const int32_t point[3])
   return 1;
 }
 
-/* The sheet between a grid point and what lies beyond one of its sides: the next point, or the
-   outside. Equal labels when there is none. */
-static mlim_sheet sheet_beyond(const mlim_field* field, const int32_t point[3], int side)
+/* The same for RUN points along x from one on. All of them, and the next one, are off the box's faces.
+   Without branches: nearly all runs are. */
+static int is_inner_run(const block* b, const int32_t first[3])
 {
-  const mlim_field_grid* grid = mlim_field_grid_of(field);
-  const int32_t label = mlim_field_point_label(field, point);
-  int32_t next[3] = { point[0], point[1], point[2] };
-  next[side >> 1] += side & 1 ? 1 : -1;
-  const int is_out = next[side >> 1] < 0 || next[side >> 1] >= grid->dims[side >> 1];
-  const int32_t other =
-    is_out ? mlim_field_outside_label(field) : mlim_field_point_label(field, next);
-  return (mlim_sheet){ .low = label < other ? label : other,
-    .high = label < other ? other : label,
-    .face = is_out ? side : -1 };
+  const size_t row = (size_t)b->dims[0];
+  const uint16_t* here =
+    b->labels + (size_t)first[0] + row * ((size_t)first[1] + (size_t)b->dims[1] * (size_t)first[2]);
+  const uint16_t* above = here + row;
+  const uint16_t* behind = here + row * (size_t)b->dims[1];
+  unsigned differs = 0;
+  for (size_t x = 0; x < RUN; ++x)
+  {
+    differs |= (unsigned)((here[x] ^ here[x + 1]) | (here[x] ^ above[x]) | (here[x] ^ behind[x]));
+  }
+  return differs == 0;
 }
 
-static mlim_status seed_point(
-  mlim_seeds* seeds, const int32_t point[3], sheet_list* list, mlim_context* context, size_t* count)
+/* The sheet between a grid point and what lies beyond one of its sides: the next point, or the
+   outside. Equal labels when there is none, and on the side of a point before, which has looked already. */
+static mlim_sheet sheet_beyond(
+  const block* b, int32_t outside_label, const int32_t point[3], int side)
+{
+  const int axis = side >> 1;
+  const size_t row = (size_t)b->dims[0];
+  const size_t steps[3] = { 1, row, row * (size_t)b->dims[1] };
+  const uint16_t* here =
+    b->labels + (size_t)point[0] + row * (size_t)point[1] + steps[2] * (size_t)point[2];
+  const int is_out = side & 1 ? point[axis] + 1 == b->dims[axis] : point[axis] == 0;
+  const int32_t label = *here;
+  const int32_t other = is_out ? outside_label : side & 1 ? here[steps[axis]] : label;
+  return (mlim_sheet){ .low = (uint16_t)(label < other ? label : other),
+    .high = (uint16_t)(label < other ? other : label),
+    .face = (signed char)(is_out ? side : -1) };
+}
+
+static mlim_status seed_point(mlim_seeds* seeds, const block* b, const int32_t point[3],
+  sheet_list* list, mlim_context* context, size_t* count)
 {
   const mlim_complex* complex = seeds->complex;
+  const int32_t outside = mlim_field_outside_label(complex->oracle.field);
   for (int side = 0; side < 6; ++side)
   {
     mlim_crossing crossing;
-    const mlim_sheet sheet = sheet_beyond(complex->oracle.field, point, side);
-    const int is_taken = !(side & 1) && point[side >> 1] > 0; /* the point before has looked */
-    if (is_taken || sheet.low == sheet.high)
+    const mlim_sheet sheet = sheet_beyond(b, outside, point, side);
+    if (sheet.low == sheet.high)
     {
       continue;
     }
     const size_t place = place_of(list, &sheet);
-    if (place == MAX_SHEETS || list->tries[place] == MAX_TRIES ||
-        !cross_grid_edge(complex, point, side, &crossing))
+    if (place == MAX_SHEETS || list->tries[place] == MAX_TRIES)
+    {
+      continue;
+    }
+    const grid_edge edge = edge_from(complex, point, side);
+    if (is_edge_too_near(seeds, &edge))
+    {
+      ++list->tries[place];
+      continue;
+    }
+    if (!cross_edge(complex, &edge, &crossing))
     {
       continue;
     }
@@ -255,30 +305,43 @@ static mlim_status seed_point(
   return MLIM_OK;
 }
 
+/* One row of a block. */
+static mlim_status seed_row(mlim_seeds* seeds, const block* b, const int32_t row[3],
+  sheet_list* list, mlim_context* context, size_t* count)
+{
+  const int is_off_faces =
+    row[1] > 0 && row[1] + 1 < b->dims[1] && row[2] > 0 && row[2] + 1 < b->dims[2];
+  mlim_status status = MLIM_OK;
+  for (int32_t x = b->low[0]; x < b->high[0] && status == MLIM_OK; ++x)
+  {
+    const int32_t point[3] = { x, row[1], row[2] };
+    const int is_run = is_off_faces && (x - b->low[0]) % RUN == 0 && x > 0 && b->high[0] - x > RUN;
+    if (is_run && is_inner_run(b, point))
+    {
+      x += RUN - 1;
+    }
+    else if (!is_inner(b, point))
+    {
+      status = seed_point(seeds, b, point, list, context, count);
+    }
+  }
+  return status;
+}
+
 static mlim_status seed_block(
   mlim_seeds* seeds, const block* b, mlim_context* context, size_t* count)
 {
   sheet_list list = { .count = 0 };
-  int32_t p[3];
-  for (p[2] = b->low[2]; p[2] < b->high[2]; ++p[2])
+  mlim_status status = MLIM_OK;
+  int32_t row[3] = { 0 };
+  for (row[2] = b->low[2]; row[2] < b->high[2] && status == MLIM_OK; ++row[2])
   {
-    for (p[1] = b->low[1]; p[1] < b->high[1]; ++p[1])
+    for (row[1] = b->low[1]; row[1] < b->high[1] && status == MLIM_OK; ++row[1])
     {
-      for (p[0] = b->low[0]; p[0] < b->high[0]; ++p[0])
-      {
-        if (is_inner(seeds->complex->oracle.field, p))
-        {
-          continue;
-        }
-        const mlim_status status = seed_point(seeds, p, &list, context, count);
-        if (status != MLIM_OK)
-        {
-          return status;
-        }
-      }
+      status = seed_row(seeds, b, row, &list, context, count);
     }
   }
-  return MLIM_OK;
+  return status;
 }
 
 /* Blocks of so many grid points along each axis. */
@@ -286,7 +349,7 @@ static mlim_status seed_blocks(
   mlim_seeds* seeds, const int32_t side[3], double done, mlim_context* context, size_t* count)
 {
   const int32_t* dims = mlim_field_grid_of(seeds->complex->oracle.field)->dims;
-  block b;
+  block b = { .labels = mlim_field_point_labels(seeds->complex->oracle.field), .dims = dims };
   for (b.low[2] = 0; b.low[2] < dims[2]; b.low[2] += side[2])
   {
     const mlim_status going = mlim_progress(context, MLIM_STAGE_SURFACE, done);
