@@ -6,7 +6,7 @@
 
 enum
 {
-  MLIM_MAX_NEAR_PIECES = 512
+  MLIM_MAX_NEAR_PIECES = 2048
 };
 
 /* Where the samples are: piece s goes from sample s to the next one of its curve. */

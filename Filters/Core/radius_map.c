@@ -246,16 +246,20 @@ static void limit_by_piece(
   }
 }
 
-/* Pieces that start too far away to lower the limit are left out; the last hundredth of a step is for
-   rounding. */
+/* 0: the piece starts too far away to lower the limit. The last hundredth of a step is for rounding. */
+static int may_limit(
+  const mlim_radius_map* map, const mlim_pieces* pieces, size_t sample, const double start[3])
+{
+  const double far = map->limits[sample] / DISTANCE_SHARE + 1.01 * pieces->step;
+  return mlim_distance_squared(start, map->points + 3 * sample) < far * far;
+}
+
 static void limit_by_list(mlim_radius_map* map, const mlim_pieces* pieces, size_t curve,
   size_t sample, const mlim_piece_list* list)
 {
-  const double* point = map->points + 3 * sample;
   for (size_t k = 0; k < list->count; ++k)
   {
-    const double far = map->limits[sample] / DISTANCE_SHARE + 1.01 * pieces->step;
-    if (mlim_distance_squared(list->starts[k], point) < far * far)
+    if (may_limit(map, pieces, sample, list->starts[k]))
     {
       limit_by_piece(map, pieces, curve, sample, (size_t)list->pieces[k]);
     }
@@ -270,7 +274,10 @@ static void limit_by_search(
   for (int32_t s = mlim_point_grid_first(&pieces->grid, point, pieces->reach, &walk); s >= 0;
        s = mlim_point_grid_next(&pieces->grid, &walk))
   {
-    limit_by_piece(map, pieces, curve, sample, (size_t)s);
+    if (may_limit(map, pieces, sample, map->points + 3 * (size_t)s))
+    {
+      limit_by_piece(map, pieces, curve, sample, (size_t)s);
+    }
   }
 }
 
