@@ -1,6 +1,9 @@
 /* The balls' conditions hold on networks of every kind. */
+#include "pieces.h"
 #include "scenes.h"
 #include "vector.h"
+
+#include <math.h>
 
 static double three_sectors(const double at[3], int label)
 {
@@ -206,6 +209,52 @@ static void check_scene(const char* name, const scene_spec* scene, double scale,
   mlim_field_free(field);
 }
 
+/* A list has what a search from its place meets, in its order, or says that it is too long. */
+static void test_pieces(void)
+{
+  enum
+  {
+    SAMPLES = 6000
+  };
+  static double points[3 * SAMPLES]; /* a spiral that winds ever closer */
+  const size_t offsets[2] = { 0, SAMPLES };
+  for (int s = 0; s < SAMPLES; ++s)
+  {
+    const double r = 20 * exp(-0.002 * s);
+    points[3 * s] = r * cos(0.02 * s);
+    points[3 * s + 1] = r * sin(0.02 * s);
+    points[3 * s + 2] = 0.1 * r;
+  }
+  const mlim_piece_source source = {
+    .points = points, .offsets = offsets, .curve_count = 1, .step = 0.5, .reach = 2
+  };
+  mlim_pieces pieces;
+  static mlim_piece_list list;
+  size_t short_count = 0;
+  size_t long_count = 0;
+  CHECK(mlim_pieces_create(&source, &pieces) == MLIM_OK);
+  for (size_t s = 0; s < SAMPLES; ++s)
+  {
+    const double* point = points + 3 * s;
+    const int is_whole = mlim_pieces_list(&pieces, point, &list);
+    mlim_point_walk walk;
+    size_t count = 0;
+    for (int32_t p = mlim_point_grid_first(&pieces.grid, point, source.reach, &walk); p >= 0;
+         p = mlim_point_grid_next(&pieces.grid, &walk))
+    {
+      CHECK(!is_whole || (count < list.count && list.pieces[count] == p &&
+                           mlim_distance_squared(list.starts[count], points + 3 * (size_t)p) == 0));
+      ++count;
+    }
+    CHECK(is_whole == (count <= MLIM_MAX_NEAR_PIECES));
+    CHECK(!is_whole || list.count == count);
+    short_count += (size_t)is_whole;
+    long_count += (size_t)!is_whole;
+  }
+  CHECK(short_count > 0 && long_count > 0);
+  mlim_pieces_free(&pieces);
+}
+
 int main(void)
 {
   const double scales[3] = { 1, 0.4, 3 };
@@ -257,5 +306,6 @@ int main(void)
       }
     }
   }
+  test_pieces();
   return check_result();
 }
