@@ -11,24 +11,6 @@ enum
   FIRST_CELLS = 1 << 8 /* more than there are fours of far vertices */
 };
 
-/* The centre is exact where the plain formula is not good enough; then the sphere decides nothing. */
-mlim_status delaunay_make_sphere(mlim_delaunay* d, int32_t cell, mlim_context* context)
-{
-  const double* corners[4];
-  double points[4][3];
-  double weights[4];
-  delaunay_corners(d, cell, corners);
-  for (int k = 0; k < 4; ++k)
-  {
-    memcpy(points[k], corners[k], sizeof points[k]);
-    weights[k] = corners[k][3];
-  }
-  mlim_power_sphere* sphere = &d->spheres[cell];
-  return mlim_power_sphere_make((const double(*)[3])points, weights, sphere, &d->cells[cell].bound)
-           ? MLIM_OK
-           : mlim_predicates_center(corners, context, sphere->center);
-}
-
 int delaunay_reserve_cells(mlim_delaunay* d, size_t count)
 {
   const size_t needed = d->cell_count + count;
@@ -121,7 +103,8 @@ static mlim_status make_first_cells(mlim_delaunay* d, mlim_context* context)
     {
       d->cells[c].neighbors[k] = search_neighbor(d, (int32_t)c, k);
     }
-    status = delaunay_make_sphere(d, (int32_t)c, context);
+    const int32_t id = (int32_t)c;
+    status = delaunay_make_spheres(d, &id, 1, context);
   }
   return status;
 }

@@ -157,12 +157,7 @@ mlim_status mlim_delaunay_fill(
     link_few(d);
   }
   d->last = d->made[0];
-  mlim_status status = MLIM_OK;
-  for (size_t k = 0; k < d->border_count; ++k)
-  {
-    const mlim_status made = delaunay_make_sphere(d, d->made[k], context);
-    status = status == MLIM_OK ? made : status;
-  }
+  const mlim_status status = delaunay_make_spheres(d, d->made, d->border_count, context);
   if (out != NULL && status == MLIM_OK)
   {
     *out = (mlim_delaunay_zone){ .count = d->border_count, .cells = d->made };

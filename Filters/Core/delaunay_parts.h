@@ -71,8 +71,9 @@ static inline void delaunay_facet_of(const mlim_cell* cell, int index, int32_t o
   }
 }
 
-/* Center, level and bound of a cell's sphere. */
-mlim_status delaunay_make_sphere(mlim_delaunay* d, int32_t cell, mlim_context* context);
+/* Center, level and bound of each cell's sphere; of all of them, also when one fails. */
+mlim_status delaunay_make_spheres(
+  mlim_delaunay* d, const int32_t* cells, size_t count, mlim_context* context);
 
 /* Room for so many more cells, and for one more vertex. Not 0: out of memory, or of ids. */
 int delaunay_reserve_cells(mlim_delaunay* d, size_t count);

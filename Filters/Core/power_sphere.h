@@ -78,76 +78,119 @@ static inline void mlim_power_sphere_clear(mlim_power_sphere* sphere, mlim_power
   *bound = (mlim_power_bound){ .base = 255, .slope = 255 };
 }
 
-static inline double mlim_power_sphere_squared(const double a[3], const double b[3])
+/* A point or vector, apart from the weight: by value, so that a compiler can work on several cells at once. */
+typedef struct mlim_power_point
 {
-  const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  double x, y, z;
+  double weight;
+} mlim_power_point;
+
+/* A sphere and its bound as they come out, before they are rounded. */
+typedef struct mlim_power_parts
+{
+  double x, y, z; /* centre */
+  double level;
+  double base, slope;
+  int is_flat; /* too flat for these formulas: the rest means nothing */
+} mlim_power_parts;
+
+static inline mlim_power_point mlim_power_edge(mlim_power_point from, mlim_power_point to)
+{
+  return (mlim_power_point){ .x = to.x - from.x, .y = to.y - from.y, .z = to.z - from.z };
+}
+
+static inline double mlim_power_dot(mlim_power_point a, mlim_power_point b)
+{
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline mlim_power_point mlim_power_cross(mlim_power_point a, mlim_power_point b)
+{
+  return (mlim_power_point){
+    .x = a.y * b.z - a.z * b.y, .y = a.z * b.x - a.x * b.z, .z = a.x * b.y - a.y * b.x
+  };
+}
+
+static inline double mlim_power_sum(mlim_power_point a)
+{
+  return fabs(a.x) + fabs(a.y) + fabs(a.z);
+}
+
+static inline double mlim_power_larger(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+/* What one more vertex adds to the worst residual and to the largest term. */
+static inline void mlim_power_residual(
+  mlim_power_point vertex, mlim_power_point center, double level, double* worst, double* most)
+{
+  const mlim_power_point d = mlim_power_edge(center, vertex);
+  const double squared = mlim_power_dot(d, d);
+  *worst = mlim_power_larger(fabs(squared - vertex.weight - level), *worst);
+  *most = mlim_power_larger(squared + fabs(vertex.weight), *most);
 }
 
 /* Sets level and bound for a centre. `gradient`: the sum of |n_k|_1 / v. */
-static inline void mlim_power_sphere_bound(const double points[4][3], const double weights[4],
-  double gradient, mlim_power_sphere* sphere, mlim_power_bound* bound)
+static inline void mlim_power_sphere_bound(mlim_power_point a, mlim_power_point b,
+  mlim_power_point c, mlim_power_point d, double gradient, mlim_power_parts* out)
 {
-  const double first = mlim_power_sphere_squared(points[0], sphere->center);
+  const mlim_power_point center = { .x = out->x, .y = out->y, .z = out->z };
+  const mlim_power_point radius = mlim_power_edge(center, a);
+  const double first = mlim_power_dot(radius, radius);
   double worst = 0;
-  double most = first + fabs(weights[0]);
-  sphere->level = first - weights[0];
-  for (int k = 1; k < 4; ++k)
-  {
-    const double squared = mlim_power_sphere_squared(points[k], sphere->center);
-    const double residual = fabs(squared - weights[k] - sphere->level);
-    worst = residual > worst ? residual : worst;
-    most = squared + fabs(weights[k]) > most ? squared + fabs(weights[k]) : most;
-  }
+  double most = first + fabs(a.weight);
+  out->level = first - a.weight;
+  mlim_power_residual(b, center, out->level, &worst, &most);
+  mlim_power_residual(c, center, out->level, &worst, &most);
+  mlim_power_residual(d, center, out->level, &worst, &most);
   const double residual = worst + MLIM_SPHERE_ROUNDING * most;
   const double growth = 2.1 * gradient;
-  bound->base = mlim_power_bound_round(MLIM_SPHERE_SLACK * residual * (1 + growth * sqrt(first)));
-  bound->slope = mlim_power_bound_round(MLIM_SPHERE_SLACK * residual * growth);
+  out->base = MLIM_SPHERE_SLACK * residual * (1 + growth * sqrt(first));
+  out->slope = MLIM_SPHERE_SLACK * residual * growth;
 }
 
-/* Weighted circumcentre and bound of a positively oriented tetrahedron. Returns 0, and clears the
-   sphere, when it is too flat for that. */
-static inline int mlim_power_sphere_make(const double points[4][3], const double weights[4],
-  mlim_power_sphere* out, mlim_power_bound* bound)
+/* Weighted circumcentre and bound of a positively oriented tetrahedron. Without a branch. */
+static inline mlim_power_parts mlim_power_sphere_parts(
+  mlim_power_point a, mlim_power_point b, mlim_power_point c, mlim_power_point d)
 {
-  double edge[3][3];
-  double right[3];
-  double product = 1;
-  for (int k = 0; k < 3; ++k)
-  {
-    for (int j = 0; j < 3; ++j)
-    {
-      edge[k][j] = points[k + 1][j] - points[0][j];
-    }
-    const double squared = mlim_power_sphere_squared(points[k + 1], points[0]);
-    right[k] = squared - weights[k + 1] + weights[0];
-    product *= squared;
-  }
-  double normal[3][3];
-  double sum = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    const double* a = edge[(k + 1) % 3];
-    const double* b = edge[(k + 2) % 3];
-    normal[k][0] = a[1] * b[2] - a[2] * b[1];
-    normal[k][1] = a[2] * b[0] - a[0] * b[2];
-    normal[k][2] = a[0] * b[1] - a[1] * b[0];
-    sum += fabs(normal[k][0]) + fabs(normal[k][1]) + fabs(normal[k][2]);
-  }
-  const double volume =
-    edge[0][0] * normal[0][0] + edge[0][1] * normal[0][1] + edge[0][2] * normal[0][2];
-  if (!(volume > 0) || volume * volume < MLIM_SPHERE_FLAT * product || product < MLIM_SPHERE_LEAST)
+  const mlim_power_point e = mlim_power_edge(a, b);
+  const mlim_power_point f = mlim_power_edge(a, c);
+  const mlim_power_point g = mlim_power_edge(a, d);
+  const double ee = mlim_power_dot(e, e);
+  const double ff = mlim_power_dot(f, f);
+  const double gg = mlim_power_dot(g, g);
+  const double r = ee - b.weight + a.weight;
+  const double s = ff - c.weight + a.weight;
+  const double t = gg - d.weight + a.weight;
+  const mlim_power_point l = mlim_power_cross(f, g);
+  const mlim_power_point m = mlim_power_cross(g, e);
+  const mlim_power_point n = mlim_power_cross(e, f);
+  const double product = ee * ff * gg;
+  const double volume = mlim_power_dot(e, l);
+  mlim_power_parts out;
+  out.is_flat =
+    !(volume > 0) | (volume * volume < MLIM_SPHERE_FLAT * product) | (product < MLIM_SPHERE_LEAST);
+  out.x = a.x + 0.5 * (r * l.x + s * m.x + t * n.x) / volume;
+  out.y = a.y + 0.5 * (r * l.y + s * m.y + t * n.y) / volume;
+  out.z = a.z + 0.5 * (r * l.z + s * m.z + t * n.z) / volume;
+  const double sum = mlim_power_sum(l) + mlim_power_sum(m) + mlim_power_sum(n);
+  mlim_power_sphere_bound(a, b, c, d, sum / volume, &out);
+  return out;
+}
+
+/* Returns 0, and clears the sphere, when the tetrahedron is too flat. */
+static inline int mlim_power_sphere_take(
+  const mlim_power_parts* parts, mlim_power_sphere* out, mlim_power_bound* bound)
+{
+  if (parts->is_flat)
   {
     mlim_power_sphere_clear(out, bound);
     return 0;
   }
-  for (int j = 0; j < 3; ++j)
-  {
-    out->center[j] =
-      points[0][j] +
-      0.5 * (right[0] * normal[0][j] + right[1] * normal[1][j] + right[2] * normal[2][j]) / volume;
-  }
-  mlim_power_sphere_bound(points, weights, sum / volume, out, bound);
+  *out = (mlim_power_sphere){ .center = { parts->x, parts->y, parts->z }, .level = parts->level };
+  bound->base = mlim_power_bound_round(parts->base);
+  bound->slope = mlim_power_bound_round(parts->slope);
   return 1;
 }
 

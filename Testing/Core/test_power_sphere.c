@@ -84,6 +84,21 @@ typedef struct tally
   size_t asked, decided, wrong, zeros;
 } tally;
 
+/* The sphere of the first four points. Not 0: it decides something. */
+static int make(const double points[][3], const double weights[], mlim_power_sphere* sphere,
+  mlim_power_bound* bound)
+{
+  mlim_power_point p[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    p[k] = (mlim_power_point){
+      .x = points[k][0], .y = points[k][1], .z = points[k][2], .weight = weights[k]
+    };
+  }
+  const mlim_power_parts parts = mlim_power_sphere_parts(p[0], p[1], p[2], p[3]);
+  return mlim_power_sphere_take(&parts, sphere, bound);
+}
+
 /* Asks about the last point; scale and offset leave the numbers exact. */
 static void ask(const integers* n, double scale, double offset, tally* t)
 {
@@ -99,7 +114,7 @@ static void ask(const integers* n, double scale, double offset, tally* t)
   }
   mlim_power_sphere sphere;
   mlim_power_bound bound;
-  mlim_power_sphere_make((const double(*)[3])points, weights, &sphere, &bound);
+  make((const double(*)[3])points, weights, &sphere, &bound);
   const int exact = exact_side(n);
   const int side = mlim_power_sphere_side(&sphere, &bound, points[4], weights[4]);
   ++t->asked;
@@ -123,8 +138,7 @@ static void approach(integers* n)
   }
   mlim_power_sphere sphere;
   mlim_power_bound bound;
-  if (!mlim_power_sphere_make((const double(*)[3])points, weights, &sphere, &bound) ||
-      sphere.level <= 0)
+  if (!make((const double(*)[3])points, weights, &sphere, &bound) || sphere.level <= 0)
   {
     return;
   }
