@@ -226,6 +226,13 @@ double mlim_complex_power(const mlim_complex* complex)
   return least;
 }
 
+/* Index in a cell of the facet that it shares with a living neighbour; all ids are of living cells. */
+static int index_beside(const mlim_cell* cell, int32_t neighbor)
+{
+  const int32_t* n = cell->neighbors;
+  return (n[1] == neighbor) + 2 * (n[2] == neighbor) + 3 * (n[3] == neighbor);
+}
+
 /* Records inside the zone die; those on its surface go over to the cell outside. */
 static void empty_zone(mlim_complex* complex)
 {
@@ -252,8 +259,7 @@ static void empty_zone(mlim_complex* complex)
         continue;
       }
       complex->facets[record].cell = other;
-      complex->facets[record].index =
-        (unsigned char)mlim_complex_index_apart(&complex->cells[other], &complex->cells[id]);
+      complex->facets[record].index = (unsigned)index_beside(&complex->cells[other], id) & 3;
     }
   }
 }
@@ -274,7 +280,7 @@ static void inherit_record(mlim_complex* complex, int32_t id)
   if (cell->neighbors[0] != MLIM_NO_CELL)
   {
     const mlim_cell* outside = &complex->cells[cell->neighbors[0]];
-    cell->facets[0] = outside->facets[mlim_complex_index_apart(outside, cell)];
+    cell->facets[0] = outside->facets[index_beside(outside, id)];
   }
 }
 
