@@ -3,6 +3,8 @@
 #include "memory.h"
 #include "status.h"
 
+#include <string.h>
+
 enum
 {
   CELLS_A_PIECE = 1 << 18 /* between two looks at the host: some milliseconds */
@@ -89,6 +91,7 @@ static void set_side(mlim_boundary* boundary, int32_t cell, int index, int diffe
 void mlim_boundary_update(mlim_boundary* boundary, const mlim_complex* complex, int32_t cell)
 {
   const mlim_cell* own = &complex->cells[cell];
+  boundary->sides[cell] = 0;
   for (int k = 0; k < 4; ++k)
   {
     const int32_t id = own->neighbors[k];
@@ -106,6 +109,24 @@ void mlim_boundary_update(mlim_boundary* boundary, const mlim_complex* complex, 
     set_side(boundary, cell, k, differs, cell < id);
     set_side(boundary, id, back, differs, id < cell);
   }
+}
+
+mlim_status mlim_boundary_follow(
+  mlim_boundary* boundary, const mlim_complex* complex, mlim_context* context)
+{
+  const mlim_delaunay_zone dead = mlim_delaunay_dead(complex->delaunay);
+  size_t capacity = boundary->cell_count;
+  if (mlim_reserve(&boundary->sides, &capacity, complex->cell_count, 1))
+  {
+    return mlim_fail_memory(context, "the facets between labels");
+  }
+  memset(boundary->sides + boundary->cell_count, 0, complex->cell_count - boundary->cell_count);
+  boundary->cell_count = complex->cell_count;
+  for (size_t d = 0; d < dead.count; ++d)
+  {
+    boundary->sides[dead.cells[d]] = 0;
+  }
+  return MLIM_OK;
 }
 
 size_t mlim_boundary_count(const mlim_boundary* boundary)

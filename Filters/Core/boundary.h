@@ -25,6 +25,11 @@ void mlim_boundary_free(mlim_boundary* boundary);
 /* A cell's label has changed. */
 void mlim_boundary_update(mlim_boundary* boundary, const mlim_complex* complex, int32_t cell);
 
+/* Cells have come and gone: there is room for the new ones, and none that is dead has sides. Those of the new
+   ones are for mlim_boundary_update to find. */
+mlim_status mlim_boundary_follow(
+  mlim_boundary* boundary, const mlim_complex* complex, mlim_context* context);
+
 /* How many facets there are. */
 size_t mlim_boundary_count(const mlim_boundary* boundary);
 

@@ -35,8 +35,7 @@ typedef struct build
   const mlim_balls* used_balls;
   size_t hidden_ball_count;
   size_t insertion_count; /* of the passes before this one */
-  size_t relabeled_cell_count;
-  size_t stray_count;
+  mlim_tidied tidied;
   int has_volume;         /* wanted: the complex is needed to the end */
   double done;            /* of the certificate's stage */
   mlim_boundary boundary; /* of the finished complex */
@@ -219,8 +218,7 @@ static mlim_status find_boundary(build* b, mlim_mesh* out)
 static mlim_status tidy(build* b, mlim_mesh* out)
 {
   (void)out;
-  return mlim_tidy_run(
-    &b->refinement, &b->boundary, b->done, b->context, &b->relabeled_cell_count, &b->stray_count);
+  return mlim_tidy_run(&b->refinement, &b->boundary, b->done, b->context, &b->tidied);
 }
 
 static mlim_status settle_pinches(build* b, mlim_mesh* out)
@@ -238,7 +236,7 @@ static mlim_status settle_pinches(build* b, mlim_mesh* out)
   b->used_balls = &b->balls;
   b->refinement.complex.balls = &b->balls;
   return mlim_tidy_count_strays(
-    &b->refinement.complex, &b->boundary, b->done, b->context, &b->stray_count);
+    &b->refinement.complex, &b->boundary, b->done, b->context, &b->tidied.stray_count);
 }
 
 static mlim_status read(build* b, mlim_mesh* out)
@@ -256,9 +254,9 @@ static mlim_status count_unresolved(build* b, mlim_mesh* out)
   const mlim_status status =
     mlim_unresolved_count(&b->refinement.complex, b->options, b->done, b->context, report);
   report->insertion_count = b->insertion_count + b->refinement.insertion_count;
-  report->relabeled_cell_count = b->relabeled_cell_count;
+  report->relabeled_cell_count = b->tidied.change_count;
   report->hidden_ball_count = b->hidden_ball_count;
-  report->unresolved_patch_count = b->stray_count;
+  report->unresolved_patch_count = b->tidied.stray_count;
   return status;
 }
 
@@ -405,7 +403,7 @@ static mlim_status refine(const mlim_field* field, const mlim_balls* balls,
   if (outcome == MLIM_OK || outcome == MLIM_VERTEX_LIMIT)
   {
     status = read_and_measure(&b, out);
-    outcome = status == MLIM_OK ? outcome : status;
+    outcome = status != MLIM_OK ? status : b.tidied.is_limited ? MLIM_VERTEX_LIMIT : outcome;
   }
   if (volume != NULL && (outcome == MLIM_OK || outcome == MLIM_VERTEX_LIMIT))
   {

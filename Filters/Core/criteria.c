@@ -257,3 +257,14 @@ int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* op
   /* Near a ball shape alone never makes an edge shorter than the facet has. */
   return badness != MLIM_BAD_RATIO || t.heaviest == 0 || power >= t.shortest_squared;
 }
+
+double mlim_criteria_room(
+  const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet)
+{
+  triangle t;
+  measure(complex, facet, &t);
+  const double power =
+    mlim_distance_squared(t.vertex[0]->point, facet->crossing) - t.vertex[0]->weight;
+  const double least = NEAREST * options->smallest_distance;
+  return power >= least * least && power >= MLIM_NEAR_GUARD * t.heaviest ? power : 0;
+}

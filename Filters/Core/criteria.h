@@ -45,4 +45,9 @@ double mlim_criteria_distance(
 int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* options,
   const mlim_facet* facet, mlim_badness badness);
 
+/* Squared distance, in power, of the facet's crossing to all vertices if it is as far from them as it has to be
+   in films, and outside the protecting balls; 0: it is too near. */
+double mlim_criteria_room(
+  const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet);
+
 #endif

@@ -184,3 +184,8 @@ mlim_delaunay_cells mlim_delaunay_all(mlim_delaunay* delaunay)
     .count = delaunay->cell_count, .cells = delaunay->cells, .spheres = delaunay->spheres
   };
 }
+
+mlim_delaunay_zone mlim_delaunay_dead(const mlim_delaunay* delaunay)
+{
+  return (mlim_delaunay_zone){ .count = delaunay->free_count, .cells = delaunay->free_cells };
+}

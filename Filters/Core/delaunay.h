@@ -94,6 +94,9 @@ typedef struct mlim_delaunay_zone
   const int32_t* cells;
 } mlim_delaunay_zone;
 
+/* Cells that are dead now: those of the zones whose ids are not in use again. */
+mlim_delaunay_zone mlim_delaunay_dead(const mlim_delaunay* delaunay);
+
 typedef enum mlim_delaunay_start
 {
   MLIM_START_IN_CONFLICT, /* start is tried alone: no search */

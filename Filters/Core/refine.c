@@ -184,6 +184,13 @@ mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_co
   set_goal(r, goal);
   mlim_status status = mlim_refine_update(r, context);
   status = status == MLIM_OK ? mlim_judge_all(r, context) : status;
+  return status == MLIM_OK ? mlim_refine_go_on(r, context) : status;
+}
+
+mlim_status mlim_refine_go_on(mlim_refinement* refinement, mlim_context* context)
+{
+  mlim_refinement* r = refinement;
+  mlim_status status = MLIM_OK;
   /* Each round inserts at least one point or is the last, and the vertex limit bounds the points. */
   while (status == MLIM_OK)
   {

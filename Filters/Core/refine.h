@@ -40,6 +40,9 @@ void mlim_refine_free(mlim_refinement* refinement);
    all is valid. */
 mlim_status mlim_refine_run(mlim_refinement* refinement, mlim_goal goal, mlim_context* context);
 
+/* The same for the goal of the last run, with the facets queued since: no other is judged that was there. */
+mlim_status mlim_refine_go_on(mlim_refinement* refinement, mlim_context* context);
+
 /* Asks for the crossing of a facet that satisfies the criteria, at the next run. *is_taken: whether it
    may be inserted at all. */
 mlim_status mlim_refine_ask(

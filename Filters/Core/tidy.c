@@ -5,11 +5,10 @@
 #include "status.h"
 #include "tidy_cell.h"
 #include "tidy_disks.h"
-#include "tidy_looks.h"
+#include "tidy_look.h"
+#include "tidy_trial.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum
 {
@@ -17,7 +16,8 @@ enum
   MAX_PART = 24,   /* cells of a part of a star that may change together */
   MAX_SEEN = 512,  /* cells of a star; the rest may be tried twice */
   SHAPE_SWEEPS = 3,
-  MAX_STEPS = 256 /* vertices that one failed vertex may lead to */
+  MAX_STEPS = 256, /* vertices that one failed vertex may lead to */
+  MAX_TRIALS = 6   /* the first mends half of what changes lay open, the last hardly any */
 };
 
 typedef struct tidier
@@ -26,8 +26,8 @@ typedef struct tidier
   mlim_context* context;
   double done; /* of the stage */
   tidy_looks looks;
-  tidy_disks disks;
-  mlim_status status; /* of the checks inside the costs */
+  tidy_disks disks;   /* once strays are mended */
+  mlim_status status; /* of what is deep inside */
   mlim_star star;     /* of the failed vertex */
   int32_t part[MAX_PART];
   size_t part_count;
@@ -38,92 +38,79 @@ typedef struct tidier
   int32_t pending[MAX_STEPS];
   int32_t* bad; /* cells with a bad triangle */
   size_t bad_count, bad_capacity;
+  tidy_trial trial;
+  int is_again; /* refinement has changed the cells listed on trial, all else is tidied */
 } tidier;
+
+static void set_label(tidier* t, int32_t id, int32_t label)
+{
+  mlim_complex* complex = &t->refinement->complex;
+  mlim_cell* cell = &complex->cells[id];
+  if (tidy_trial_note(&t->trial, id, cell->label, label))
+  {
+    t->status = mlim_fail_memory(t->context, "mending the topology");
+    return;
+  }
+  cell->label = label;
+  mlim_complex_touch_cell(complex, id);
+  tidy_disks_update(&t->disks, id);
+  tidy_look_again(&t->looks, id);
+}
+
+/* The cells to tidy: all, and once that is done those that refinement has changed. What was traded
+   elsewhere, strays for shapes, would be traded back. */
+static size_t cell_count(const tidier* t)
+{
+  return t->is_again ? t->trial.cell_count : t->refinement->complex.cell_count;
+}
+
+static int32_t cell_at(const tidier* t, size_t k)
+{
+  return t->is_again ? t->trial.cells[k] : (int32_t)k;
+}
 
 /* ---- strays ---- */
 
-/* The label for a cell that leaves the fewest strays, among its neighbours', its vertices' and its own. */
-static int32_t best_label(const mlim_complex* complex, int32_t id)
-{
-  const mlim_cell* cell = &complex->cells[id];
-  int32_t best = cell->label;
-  int least = tidy_cell_strays(complex, id, best);
-  for (int v = 0; v < 4 && least > 0; ++v)
-  {
-    const mlim_vertex* vertex = &complex->vertices[cell->vertices[v]];
-    const int is_inside = vertex->kind == MLIM_VERTEX_SURFACE && vertex->sheet.face < 0;
-    const int32_t tried[3] = { tidy_label_beyond(complex, id, v),
-      is_inside ? vertex->sheet.low : best, is_inside ? vertex->sheet.high : best };
-    for (int t = 0; t < 3; ++t)
-    {
-      const int count = tidy_cell_strays(complex, id, tried[t]);
-      if (count < least)
-      {
-        least = count;
-        best = tried[t];
-      }
-    }
-  }
-  return best;
-}
-
 /* Mends one cell, then its neighbours as far as the change reaches. Each change lowers the number of
    strays, so this ends; what a full stack leaves out stays as it is. */
-static size_t mend_strays_from(tidier* t, int32_t first)
+static void mend_strays_from(tidier* t, int32_t first)
 {
-  mlim_complex* complex = &t->refinement->complex;
+  const mlim_complex* complex = &t->refinement->complex;
   int32_t stack[MAX_STACK];
   size_t count = 0;
-  size_t changed = 0;
   stack[count++] = first;
-  while (count > 0)
+  while (count > 0 && t->status == MLIM_OK)
   {
     const int32_t id = stack[--count];
-    mlim_cell* cell = &complex->cells[id];
+    const mlim_cell* cell = &complex->cells[id];
     if (!(t->looks.bits[id] & TIDY_STRAYS) || tidy_is_frozen(complex, cell))
     {
       continue;
     }
-    const int32_t label = best_label(complex, id);
+    const int32_t label = tidy_best_label(complex, id);
     if (label == cell->label)
     {
       continue;
     }
-    cell->label = label;
-    mlim_complex_touch_cell(complex, id);
-    tidy_looks_update(&t->looks, id);
-    ++changed;
+    set_label(t, id, label);
     for (int k = 0; k < 4 && count < MAX_STACK; ++k)
     {
       stack[count++] = cell->neighbors[k];
     }
   }
-  return changed;
 }
 
-static size_t mend_strays(tidier* t)
+static mlim_status mend_strays(tidier* t)
 {
-  size_t changed = 0;
-  for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
+  for (size_t k = 0; k < cell_count(t); ++k)
   {
-    changed += t->looks.bits[c] & TIDY_STRAYS ? mend_strays_from(t, (int32_t)c) : 0;
-  }
-  return changed;
-}
-
-static size_t count_strays(const tidier* t)
-{
-  size_t count = 0;
-  for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
-  {
-    unsigned bits =
-      t->looks.bits[c] & TIDY_STRAYS & t->looks.boundary->sides[c] >> MLIM_FIRST_SHIFT;
-    for (; bits != 0; bits &= bits - 1)
+    const int32_t c = cell_at(t, k);
+    if (t->looks.bits[c] & TIDY_STRAYS)
     {
-      ++count;
+      mend_strays_from(t, c);
     }
   }
-  return count;
+  return t->status;
 }
 
 /* ---- stars that are no disks ---- */
@@ -235,10 +222,10 @@ static void relabel(tidier* t, int32_t label)
   }
 }
 
-/* Gives the part the label of a neighbour that lowers the cost most. Returns the cells changed. */
-static size_t mend_part(tidier* t)
+/* Gives the part the label of a neighbour that lowers the cost most. 1: it has changed. */
+static int mend_part(tidier* t)
 {
-  mlim_complex* complex = &t->refinement->complex;
+  const mlim_complex* complex = &t->refinement->complex;
   const int32_t own = complex->cells[t->part[0]].label;
   gather_vertices(t);
   long least = cost(t, LONG_MAX, 0);
@@ -266,17 +253,16 @@ static size_t mend_part(tidier* t)
       best = tried[n];
     }
   }
-  relabel(t, best);
+  relabel(t, own);
   for (size_t p = 0; p < t->part_count && best != own; ++p)
   {
-    tidy_disks_update(&t->disks, t->part[p]);
-    tidy_looks_update(&t->looks, t->part[p]);
+    set_label(t, t->part[p], best);
   }
-  return best != own ? t->part_count : 0;
+  return best != own;
 }
 
 /* Tries the parts of the star of a failed vertex, then its single cells. */
-static size_t mend_star(tidier* t, int32_t vertex)
+static int mend_star(tidier* t, int32_t vertex)
 {
   const mlim_complex* complex = &t->refinement->complex;
   t->seen_count = 0;
@@ -292,20 +278,18 @@ static size_t mend_star(tidier* t, int32_t vertex)
     {
       t->seen[t->seen_count++] = t->part[p];
     }
-    const size_t changed = is_part ? mend_part(t) : 0;
-    if (changed > 0)
+    if (is_part && mend_part(t))
     {
-      return changed;
+      return 1;
     }
   }
   for (size_t c = 0; c < t->star.cell_count; ++c)
   {
     t->part[0] = t->star.cells[c];
     t->part_count = 1;
-    const size_t changed = tidy_is_frozen(complex, &complex->cells[t->part[0]]) ? 0 : mend_part(t);
-    if (changed > 0)
+    if (!tidy_is_frozen(complex, &complex->cells[t->part[0]]) && mend_part(t))
     {
-      return changed;
+      return 1;
     }
   }
   return 0;
@@ -313,7 +297,7 @@ static size_t mend_star(tidier* t, int32_t vertex)
 
 /* Mends one vertex and then, as the change reaches them, the vertices of the changed cells. Each
    change lowers the cost, so this ends; the limit bounds the time. */
-static mlim_status mend_from(tidier* t, int32_t vertex, size_t* changed)
+static mlim_status mend_from(tidier* t, int32_t vertex)
 {
   size_t count = 0;
   t->pending[count++] = vertex;
@@ -327,13 +311,12 @@ static mlim_status mend_from(tidier* t, int32_t vertex, size_t* changed)
     {
       return status;
     }
-    const size_t cells = disk == MLIM_DISK_FAILS ? mend_star(t, v) : 0;
+    const int has_changed = disk == MLIM_DISK_FAILS && mend_star(t, v);
     if (t->status != MLIM_OK)
     {
       return t->status;
     }
-    *changed += cells;
-    for (size_t k = 0; cells > 0 && k < t->vertex_count && count < MAX_STEPS; ++k)
+    for (size_t k = 0; has_changed && k < t->vertex_count && count < MAX_STEPS; ++k)
     {
       t->pending[count++] = t->vertices[k];
     }
@@ -341,16 +324,17 @@ static mlim_status mend_from(tidier* t, int32_t vertex, size_t* changed)
   return MLIM_OK;
 }
 
-static mlim_status mend_disks(tidier* t, size_t* changed)
+static mlim_status mend_disks(tidier* t)
 {
   const mlim_complex* complex = &t->refinement->complex;
   mlim_status status = mlim_disks_settle(t->refinement, t->done, t->context);
   status = status == MLIM_OK ? tidy_disks_create(t->refinement, t->context, &t->disks) : status;
   for (size_t v = MLIM_FAR_VERTICES; v < complex->vertex_count && status == MLIM_OK; ++v)
   {
-    if (complex->vertices[v].is_broken || complex->vertices[v].is_dirty)
+    if ((complex->vertices[v].is_broken || complex->vertices[v].is_dirty) &&
+        !(t->is_again && !t->trial.is_near[v]))
     {
-      status = mend_from(t, (int32_t)v, changed);
+      status = mend_from(t, (int32_t)v);
     }
     if (status == MLIM_OK && v % 1024 == 0)
     {
@@ -361,13 +345,13 @@ static mlim_status mend_disks(tidier* t, size_t* changed)
 }
 
 /* Tries another label for a cell, then for it and one neighbour of its label together. */
-static size_t mend_shape(tidier* t, int32_t id)
+static void mend_shape(tidier* t, int32_t id)
 {
   const mlim_complex* complex = &t->refinement->complex;
   t->part[0] = id;
   t->part_count = 1;
-  size_t changed = mend_part(t);
-  for (int k = 0; k < 4 && changed == 0; ++k)
+  int has_changed = mend_part(t);
+  for (int k = 0; k < 4 && !has_changed; ++k)
   {
     const int32_t other = complex->cells[id].neighbors[k];
     if (complex->cells[other].label == complex->cells[id].label &&
@@ -376,10 +360,9 @@ static size_t mend_shape(tidier* t, int32_t id)
       t->part[0] = id;
       t->part[1] = other;
       t->part_count = 2;
-      changed = mend_part(t);
+      has_changed = mend_part(t);
     }
   }
-  return changed;
 }
 
 static int is_bad(const tidier* t, int32_t id)
@@ -392,15 +375,17 @@ static int is_bad(const tidier* t, int32_t id)
 /* Lists the cells with a bad triangle, also those that have to keep their label. */
 static mlim_status list_bad(tidier* t)
 {
-  for (size_t c = 0; c < t->refinement->complex.cell_count; ++c)
+  t->bad_count = 0;
+  for (size_t k = 0; k < cell_count(t); ++k)
   {
+    const int32_t c = cell_at(t, k);
     if (t->looks.bits[c] >> TIDY_BAD_SHIFT != 0)
     {
       if (mlim_reserve(&t->bad, &t->bad_capacity, t->bad_count + 1, sizeof *t->bad))
       {
         return mlim_fail_memory(t->context, "mending the topology");
       }
-      t->bad[t->bad_count++] = (int32_t)c;
+      t->bad[t->bad_count++] = c;
     }
   }
   return mlim_progress(t->context, MLIM_STAGE_CERTIFICATE, t->done);
@@ -408,7 +393,7 @@ static mlim_status list_bad(tidier* t)
 
 /* Bad triangles, some of which the changes above have brought to light: other labels may hide them. What
    has been tried in vain is tried again only if labels near it have changed since. */
-static mlim_status mend_shapes(tidier* t, size_t* changed)
+static mlim_status mend_shapes(tidier* t)
 {
   mlim_status status = list_bad(t);
   for (int sweep = 0; sweep < SHAPE_SWEEPS && status == MLIM_OK; ++sweep)
@@ -417,38 +402,92 @@ static mlim_status mend_shapes(tidier* t, size_t* changed)
     for (size_t k = 0; k < t->bad_count && status == MLIM_OK; ++k)
     {
       const int is_tried = sweep == 0 || tidy_disks_are_new(&t->disks, t->bad[k]);
-      *changed += is_tried && is_bad(t, t->bad[k]) ? mend_shape(t, t->bad[k]) : 0;
+      if (is_tried && is_bad(t, t->bad[k]))
+      {
+        mend_shape(t, t->bad[k]);
+      }
       status = t->status;
     }
   }
   return status;
 }
 
+static mlim_status mend(tidier* t)
+{
+  tidy_disks_free(&t->disks);
+  mlim_status status = mend_strays(t);
+  status = status == MLIM_OK ? mend_disks(t) : status;
+  return status == MLIM_OK ? mend_shapes(t) : status;
+}
+
+/* ---- trials ---- */
+
+/* Asks for points where triangles are misshapen. */
+static mlim_status ask(tidier* t)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  for (size_t c = 0; c < complex->cell_count; ++c)
+  {
+    const unsigned bits =
+      t->looks.bits[c] >> TIDY_BAD_SHIFT & t->looks.boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    for (int k = 0; bits >> k != 0; ++k)
+    {
+      if (bits >> k & 1u && tidy_is_misshapen(t->refinement, &complex->cells[c], k) &&
+          tidy_trial_ask(&t->trial, t->refinement, (int32_t)c, k))
+      {
+        return mlim_fail_memory(t->context, "mending the topology");
+      }
+    }
+  }
+  return MLIM_OK;
+}
+
+/* Each trial inserts points or is the last. */
+static mlim_status mend_on_trial(tidier* t)
+{
+  mlim_status status = mend(t);
+  for (int k = 0; k < MAX_TRIALS && status == MLIM_OK && !t->trial.is_limited; ++k)
+  {
+    status = ask(t);
+    if (status != MLIM_OK || t->trial.record_count == 0)
+    {
+      return status;
+    }
+    status = tidy_trial_refine(&t->trial, t->refinement, t->done, t->context, &t->is_again);
+    if (status != MLIM_OK || !t->is_again)
+    {
+      return status;
+    }
+    status = tidy_look_at_cells(&t->looks, t->trial.cells, t->trial.cell_count, t->context);
+    status = status == MLIM_OK ? mend(t) : status;
+  }
+  return status;
+}
+
 mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, double done,
-  mlim_context* context, size_t* count, size_t* stray_count)
+  mlim_context* context, mlim_tidied* out)
 {
   tidier* t = mlim_allocate_zeroed(1, sizeof *t);
   if (t == NULL)
   {
     return mlim_fail_memory(context, "mending the topology");
   }
-  *t = (tidier){ .refinement = refinement, .context = context, .done = done };
-  *count = 0;
-  *stray_count = 0;
-  mlim_status status = tidy_looks_create(refinement, boundary, done, context, &t->looks);
+  *t = (tidier){ .refinement = refinement,
+    .context = context,
+    .done = done,
+    .looks = { .refinement = refinement, .boundary = boundary } };
+  mlim_status status = tidy_look_at_all(&t->looks, done, context);
+  status = status == MLIM_OK ? mend_on_trial(t) : status;
   if (status == MLIM_OK)
   {
-    *count = mend_strays(t);
-    status = mend_disks(t, count);
+    *out = (mlim_tidied){ .change_count = t->trial.change_count,
+      .stray_count = tidy_count_looked_strays(&t->looks),
+      .is_limited = t->trial.is_limited };
   }
-  status = status == MLIM_OK ? mend_shapes(t, count) : status;
-  if (status == MLIM_OK)
-  {
-    *stray_count = count_strays(t);
-  }
+  tidy_trial_free(&t->trial);
   mlim_star_free(&t->star);
-  tidy_looks_free(&t->looks);
   tidy_disks_free(&t->disks);
+  mlim_release(t->looks.bits);
   mlim_release(t->bad);
   mlim_release(t);
   return status;

@@ -100,6 +100,30 @@ int32_t tidy_label_beyond(const mlim_complex* complex, int32_t id, int index)
                                                    : cell->label;
 }
 
+int32_t tidy_best_label(const mlim_complex* complex, int32_t id)
+{
+  const mlim_cell* cell = &complex->cells[id];
+  int32_t best = cell->label;
+  int least = tidy_cell_strays(complex, id, best);
+  for (int v = 0; v < 4 && least > 0; ++v)
+  {
+    const mlim_vertex* vertex = &complex->vertices[cell->vertices[v]];
+    const int is_inside = vertex->kind == MLIM_VERTEX_SURFACE && vertex->sheet.face < 0;
+    const int32_t tried[3] = { tidy_label_beyond(complex, id, v),
+      is_inside ? vertex->sheet.low : best, is_inside ? vertex->sheet.high : best };
+    for (int t = 0; t < 3; ++t)
+    {
+      const int count = tidy_cell_strays(complex, id, tried[t]);
+      if (count < least)
+      {
+        least = count;
+        best = tried[t];
+      }
+    }
+  }
+  return best;
+}
+
 typedef struct stray_job
 {
   const mlim_complex* complex;

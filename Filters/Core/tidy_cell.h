@@ -18,6 +18,9 @@ int tidy_is_misshapen(const mlim_refinement* r, const mlim_cell* cell, int index
 /* Vertices of the cell's facets that are off their sheets if it had this label. */
 int tidy_cell_strays(const mlim_complex* complex, int32_t id, int32_t label);
 
+/* The label for a cell that leaves the fewest strays, among its neighbours', its vertices' and its own. */
+int32_t tidy_best_label(const mlim_complex* complex, int32_t id);
+
 /* Facets of a cell that are misshapen. */
 int tidy_cell_misshapen(const mlim_refinement* r, int32_t id);
 

@@ -65,10 +65,9 @@ mlim_status tidy_disks_ask(
 
 void tidy_disks_update(tidy_disks* disks, int32_t cell)
 {
-  mlim_complex* complex = &disks->refinement->complex;
-  mlim_complex_touch_cell(complex, cell);
-  for (int k = 0; k < 4; ++k)
+  for (int k = 0; k < 4 && disks->known != NULL; ++k)
   {
+    const mlim_complex* complex = &disks->refinement->complex;
     const int32_t v = complex->cells[cell].vertices[k];
     disks->known[v] = UNKNOWN;
     disks->changes[v] = disks->sweep;

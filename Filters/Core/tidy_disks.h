@@ -26,7 +26,7 @@ mlim_status tidy_disks_check(
 mlim_status tidy_disks_ask(
   tidy_disks* disks, int32_t vertex, mlim_context* context, int* has_failed);
 
-/* A cell has a new label for good: the stars of its vertices have changed. */
+/* A cell has a new label for good: the stars of its vertices have changed. Nothing before the disks are made. */
 void tidy_disks_update(tidy_disks* disks, int32_t cell);
 
 /* Whether a star of a cell's or its neighbours' vertices has changed in this sweep or the one before. */

@@ -1,10 +1,12 @@
-#include "tidy_looks.h"
+#include "tidy_look.h"
 
 #include "ahead.h"
 #include "memory.h"
 #include "sides.h"
 #include "status.h"
 #include "tidy_cell.h"
+
+#include <string.h>
 
 enum
 {
@@ -38,10 +40,10 @@ static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index, i
   return (unsigned)is_stray | (unsigned)is_bad << TIDY_BAD_SHIFT;
 }
 
-static void ask_ahead(const tidy_looks* t, size_t cell)
+static void ask_ahead(const tidy_looks* looks, size_t cell)
 {
-  const mlim_complex* complex = &t->refinement->complex;
-  const unsigned sides = t->boundary->sides[cell] >> MLIM_FIRST_SHIFT;
+  const mlim_complex* complex = &looks->refinement->complex;
+  const unsigned sides = looks->boundary->sides[cell] >> MLIM_FIRST_SHIFT;
   for (int k = 0; sides >> k != 0; ++k)
   {
     if (sides >> k & 1u)
@@ -55,29 +57,29 @@ static void ask_ahead(const tidy_looks* t, size_t cell)
 /* Looks at each facet from its cell of the lower id. */
 static void look_body(void* data, size_t begin, size_t end)
 {
-  const tidy_looks* t = (const tidy_looks*)data;
+  const tidy_looks* looks = (const tidy_looks*)data;
   for (size_t c = begin; c < end; ++c)
   {
-    const unsigned sides = t->boundary->sides[c] >> MLIM_FIRST_SHIFT;
-    unsigned looks = 0;
+    const unsigned sides = looks->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    unsigned bits = 0;
     if (c + 2 * MLIM_CELLS_AHEAD < end)
     {
-      mlim_prefetch(&t->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
-      ask_ahead(t, c + MLIM_CELLS_AHEAD);
+      mlim_prefetch(&looks->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
+      ask_ahead(looks, c + MLIM_CELLS_AHEAD);
     }
     for (int k = 0; sides >> k != 0; ++k)
     {
-      looks |= sides >> k & 1u ? look_at_facet(t->refinement, (int32_t)c, k, 1) << k : 0;
+      bits |= sides >> k & 1u ? look_at_facet(looks->refinement, (int32_t)c, k, 1) << k : 0;
     }
-    t->bits[c] = (unsigned char)looks;
+    looks->bits[c] = (unsigned char)bits;
   }
 }
 
 /* What is wrong with a facet, told to one of its cells. */
-static void note(tidy_looks* t, int32_t cell, int index, unsigned look)
+static void note(tidy_looks* looks, int32_t cell, int index, unsigned look)
 {
   const unsigned mask = (1u | 1u << TIDY_BAD_SHIFT) << index;
-  t->bits[cell] = (unsigned char)((t->bits[cell] & ~mask) | look << index);
+  looks->bits[cell] = (unsigned char)((looks->bits[cell] & ~mask) | look << index);
 }
 
 static int index_of(const mlim_cell* cell, int32_t neighbor)
@@ -91,58 +93,46 @@ static int index_of(const mlim_cell* cell, int32_t neighbor)
 }
 
 /* The facets' cells of the higher ids are told too: there are few with something wrong. */
-static void spread_looks(tidy_looks* t)
+static void spread(tidy_looks* looks)
 {
-  const mlim_complex* complex = &t->refinement->complex;
+  const mlim_complex* complex = &looks->refinement->complex;
   for (size_t c = 0; c < complex->cell_count; ++c)
   {
-    for (int k = 0; k < 4 && t->bits[c] != 0; ++k)
+    for (int k = 0; k < 4 && looks->bits[c] != 0; ++k)
     {
-      const unsigned look = t->bits[c] >> k & (1u | 1u << TIDY_BAD_SHIFT);
-      if (look != 0 && t->boundary->sides[c] >> (MLIM_FIRST_SHIFT + k) & 1u)
+      const unsigned look = looks->bits[c] >> k & (1u | 1u << TIDY_BAD_SHIFT);
+      if (look != 0 && looks->boundary->sides[c] >> (MLIM_FIRST_SHIFT + k) & 1u)
       {
         const int32_t other = complex->cells[c].neighbors[k];
-        note(t, other, index_of(&complex->cells[other], (int32_t)c), look);
+        note(looks, other, index_of(&complex->cells[other], (int32_t)c), look);
       }
     }
   }
 }
 
-mlim_status tidy_looks_create(mlim_refinement* refinement, mlim_boundary* boundary, double done,
-  mlim_context* context, tidy_looks* out)
+mlim_status tidy_look_at_all(tidy_looks* looks, double done, mlim_context* context)
 {
-  const size_t count = refinement->complex.cell_count;
-  *out =
-    (tidy_looks){ .refinement = refinement, .boundary = boundary, .bits = mlim_allocate(count, 1) };
-  if (out->bits == NULL)
+  const size_t count = looks->refinement->complex.cell_count;
+  looks->bits = mlim_allocate(count, 1);
+  if (looks->bits == NULL)
   {
     return mlim_fail_memory(context, "mending the topology");
   }
   const mlim_status status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = count,
                                                             .body = look_body,
-                                                            .job = out,
+                                                            .job = looks,
                                                             .stage = MLIM_STAGE_CERTIFICATE,
                                                             .from = done,
                                                             .to = done,
                                                             .step = LOOK_EVERY });
   if (status == MLIM_OK)
   {
-    spread_looks(out);
-  }
-  else
-  {
-    tidy_looks_free(out);
+    spread(looks);
   }
   return status;
 }
 
-void tidy_looks_free(tidy_looks* looks)
-{
-  mlim_release(looks->bits);
-  *looks = (tidy_looks){ 0 };
-}
-
-void tidy_looks_update(tidy_looks* looks, int32_t id)
+void tidy_look_again(tidy_looks* looks, int32_t id)
 {
   const mlim_complex* complex = &looks->refinement->complex;
   const mlim_cell* cell = &complex->cells[id];
@@ -150,6 +140,10 @@ void tidy_looks_update(tidy_looks* looks, int32_t id)
   for (int k = 0; k < 4; ++k)
   {
     const int32_t other = cell->neighbors[k];
+    if (other == MLIM_NO_CELL)
+    {
+      continue;
+    }
     const int back = index_of(&complex->cells[other], id);
     const unsigned look = cell->label == complex->cells[other].label ? 0
                           : id < other ? look_at_facet(looks->refinement, id, k, 0)
@@ -157,4 +151,41 @@ void tidy_looks_update(tidy_looks* looks, int32_t id)
     note(looks, id, k, look);
     note(looks, other, back, look);
   }
+}
+
+mlim_status tidy_look_at_cells(
+  tidy_looks* looks, const int32_t* cells, size_t count, mlim_context* context)
+{
+  const mlim_complex* complex = &looks->refinement->complex;
+  const size_t old = looks->boundary->cell_count;
+  size_t capacity = old;
+  if (mlim_reserve(&looks->bits, &capacity, complex->cell_count, 1))
+  {
+    return mlim_fail_memory(context, "mending the topology");
+  }
+  memset(looks->bits + old, 0, complex->cell_count - old);
+  const mlim_status status = mlim_boundary_follow(looks->boundary, complex, context);
+  for (size_t c = 0; c < old && status == MLIM_OK; ++c)
+  {
+    looks->bits[c] = looks->boundary->sides[c] != 0 ? looks->bits[c] : 0;
+  }
+  for (size_t k = 0; k < count && status == MLIM_OK; ++k)
+  {
+    tidy_look_again(looks, cells[k]);
+  }
+  return status;
+}
+
+size_t tidy_count_looked_strays(const tidy_looks* looks)
+{
+  size_t count = 0;
+  for (size_t c = 0; c < looks->refinement->complex.cell_count; ++c)
+  {
+    unsigned bits = looks->bits[c] & TIDY_STRAYS & looks->boundary->sides[c] >> MLIM_FIRST_SHIFT;
+    for (; bits != 0; bits &= bits - 1)
+    {
+      ++count;
+    }
+  }
+  return count;
 }
