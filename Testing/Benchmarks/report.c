@@ -44,9 +44,13 @@ void bench_report_machine(const char* command, int thread_count, FILE* out)
   }
   read_processor(processor, sizeof processor);
   fprintf(out, "- Date: %s\n", date);
-  fprintf(out, "- Machine: %s, %ld cores; up to %d thread%s in use\n", processor,
-    sysconf(_SC_NPROCESSORS_ONLN), thread_count > 1 ? thread_count : 1,
-    thread_count > 1 ? "s" : "");
+  char threads[32] = "one thread";
+  if (thread_count > 1)
+  {
+    snprintf(threads, sizeof threads, "up to %d threads", thread_count);
+  }
+  fprintf(out, "- Machine: %s, %ld cores; %s in use\n", processor, sysconf(_SC_NPROCESSORS_ONLN),
+    threads);
   fprintf(out, "- Compiler: %s; CGAL %s; VTK %s\n", BENCH_COMPILER, bench_bulk_version(),
     bench_image_version());
   fprintf(out, "- Command: `%s`\n\n", command);
