@@ -5,6 +5,7 @@
 #include "refine_disks.h"
 #include "seeds.h"
 #include "shapes.h"
+#include "tidy_disks.h"
 
 static mlim_status run_shape(int kind, const mlim_options* options, run* out)
 {
@@ -53,6 +54,48 @@ static void check_listed(const mlim_complex* complex)
   }
   CHECK_COUNT(at, mesh.certificate.disk_failure_count);
   mlim_mesh_free(&mesh);
+}
+
+/* What tidying remembers of the disks of a cell's vertices is what a check of them says. */
+static size_t check_asked(tidy_disks* disks, const mlim_cell* cell)
+{
+  size_t failed_count = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    int is_asked;
+    int is_checked;
+    CHECK(tidy_disks_ask(disks, cell->vertices[k], NULL, &is_asked) == MLIM_OK);
+    CHECK(tidy_disks_check(disks, cell->vertices[k], NULL, &is_checked) == MLIM_OK);
+    CHECK(is_asked == is_checked);
+    failed_count += is_asked != 0;
+  }
+  return failed_count;
+}
+
+/* Also when a label changes and changes back. */
+static void ask_disks(mlim_refinement* refinement)
+{
+  mlim_complex* complex = &refinement->complex;
+  tidy_disks disks;
+  size_t broken_count = 0;
+  CHECK(tidy_disks_create(refinement, NULL, &disks) == MLIM_OK);
+  for (size_t c = 0; c < complex->cell_count; c += 97)
+  {
+    mlim_cell* cell = &complex->cells[c];
+    const int32_t label = cell->label;
+    for (int way = 0; way < 2 && cell->vertices[0] >= MLIM_FAR_VERTICES && label != 0; ++way)
+    {
+      CHECK(way == 1 || check_asked(&disks, cell) == 0);
+      cell->label = way == 0 ? 0 : label;
+      mlim_complex_touch_cell(complex, (int32_t)c);
+      tidy_disks_update(&disks, (int32_t)c);
+      const size_t count = check_asked(&disks, cell);
+      CHECK(way == 0 || count == 0);
+      broken_count += count;
+    }
+  }
+  CHECK(broken_count > 0);
+  tidy_disks_free(&disks);
 }
 
 /* A cell with a label of its own breaks disks, which are noticed once it is said to have changed. */
@@ -107,6 +150,7 @@ static void test_fixed_point(int kind)
   CHECK_COUNT(refinement.complex.vertex_count, fine);
   check_disks(&refinement);
   CHECK_COUNT(mlim_complex_count_broken(&refinement.complex), 0);
+  ask_disks(&refinement);
   break_disks(&refinement);
   mlim_refine_free(&refinement);
   mlim_components_free(&components);
