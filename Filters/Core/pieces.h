@@ -6,7 +6,8 @@
 
 enum
 {
-  MLIM_MAX_NEAR_PIECES = 2048
+  MLIM_MAX_NEAR_PIECES = 2048,
+  MLIM_MAX_PIECE_LEVELS = 6
 };
 
 /* Where the samples are: piece s goes from sample s to the next one of its curve. */
@@ -19,14 +20,23 @@ typedef struct mlim_piece_source
   double reach; /* of a search */
 } mlim_piece_source;
 
-/* In a grid by their first samples. All 0 is a valid argument of _free. */
+/* All of them, in a grid by their first samples. */
+typedef struct mlim_piece_level
+{
+  mlim_point_grid grid;
+  double reach; /* of a search in it */
+} mlim_piece_level;
+
+/* What is near is found in small cubes; those that reach farther have so many pieces where curves are dense that
+   only who finds nothing near should look there. All 0 is a valid argument of _free. */
 typedef struct mlim_pieces
 {
   const double* points; /* borrowed */
-  mlim_point_grid grid;
+  mlim_piece_level
+    levels[MLIM_MAX_PIECE_LEVELS]; /* each reaches twice as far as the one before it */
+  size_t level_count;
   int32_t* curves; /* of each piece */
   double step;
-  double reach;
 } mlim_pieces;
 
 mlim_status mlim_pieces_create(const mlim_piece_source* source, mlim_pieces* out);
@@ -42,8 +52,8 @@ typedef struct mlim_piece_list
   double starts[MLIM_MAX_NEAR_PIECES][3];
 } mlim_piece_list;
 
-/* Brings the list, used before or not, to another place: mostly it stays what it was beside it. 0: the
-   search meets more pieces than a list holds. */
+/* Brings the list of the first level, used before or not, to another place: mostly it stays what it was beside
+   it. 0: the search meets more pieces than a list holds. */
 int mlim_pieces_list(const mlim_pieces* pieces, const double point[3], mlim_piece_list* list);
 
 #endif

@@ -246,11 +246,17 @@ static void limit_by_piece(
   }
 }
 
-/* 0: the piece starts too far away to lower the limit. The last hundredth of a step is for rounding. */
+/* A piece that starts farther away than this does not lower the limit. The last hundredth of a step is for
+   rounding. */
+static double reach_of(const mlim_pieces* pieces, double limit)
+{
+  return limit / DISTANCE_SHARE + 1.01 * pieces->step;
+}
+
 static int may_limit(
   const mlim_radius_map* map, const mlim_pieces* pieces, size_t sample, const double start[3])
 {
-  const double far = map->limits[sample] / DISTANCE_SHARE + 1.01 * pieces->step;
+  const double far = reach_of(pieces, map->limits[sample]);
   return mlim_distance_squared(start, map->points + 3 * sample) < far * far;
 }
 
@@ -266,18 +272,38 @@ static void limit_by_list(mlim_radius_map* map, const mlim_pieces* pieces, size_
   }
 }
 
-static void limit_by_search(
-  mlim_radius_map* map, const mlim_pieces* pieces, size_t curve, size_t sample)
+static void limit_by_search(mlim_radius_map* map, const mlim_pieces* pieces, size_t curve,
+  size_t sample, const mlim_piece_level* level)
 {
   const double* point = map->points + 3 * sample;
   mlim_point_walk walk;
-  for (int32_t s = mlim_point_grid_first(&pieces->grid, point, pieces->reach, &walk); s >= 0;
-       s = mlim_point_grid_next(&pieces->grid, &walk))
+  for (int32_t s = mlim_point_grid_first(&level->grid, point, level->reach, &walk); s >= 0;
+       s = mlim_point_grid_next(&level->grid, &walk))
   {
     if (may_limit(map, pieces, sample, map->points + 3 * (size_t)s))
     {
       limit_by_piece(map, pieces, curve, sample, (size_t)s);
     }
+  }
+}
+
+/* Farther and farther away, as long as something there could lower the limit. */
+static void limit_sample(mlim_radius_map* map, const mlim_pieces* pieces, size_t curve,
+  size_t sample, mlim_piece_list* list)
+{
+  if (mlim_pieces_list(pieces, map->points + 3 * sample, list))
+  {
+    limit_by_list(map, pieces, curve, sample, list);
+  }
+  else
+  {
+    limit_by_search(map, pieces, curve, sample, &pieces->levels[0]);
+  }
+  for (size_t l = 1; l < pieces->level_count &&
+                     reach_of(pieces, map->limits[sample]) > pieces->levels[l - 1].reach;
+       ++l)
+  {
+    limit_by_search(map, pieces, curve, sample, &pieces->levels[l]);
   }
 }
 
@@ -300,24 +326,17 @@ static void limit_body(void* data, size_t begin, size_t end)
     {
       ++curve;
     }
-    if (mlim_pieces_list(job->pieces, map->points + 3 * s, &list))
-    {
-      limit_by_list(map, job->pieces, curve, s, &list);
-    }
-    else
-    {
-      limit_by_search(map, job->pieces, curve, s);
-    }
+    limit_sample(map, job->pieces, curve, s, &list);
   }
 }
 
-/* Curves that do not end at the junction limit its ball. */
-static void limit_junction(mlim_radius_map* map, const mlim_pieces* pieces, size_t junction)
+static void limit_junction_by(
+  mlim_radius_map* map, const mlim_pieces* pieces, size_t junction, const mlim_piece_level* level)
 {
   const double* point = map->curves->points + 3 * (size_t)map->curves->junction_points[junction];
   mlim_point_walk walk;
-  for (int32_t s = mlim_point_grid_first(&pieces->grid, point, pieces->reach, &walk); s >= 0;
-       s = mlim_point_grid_next(&pieces->grid, &walk))
+  for (int32_t s = mlim_point_grid_first(&level->grid, point, level->reach, &walk); s >= 0;
+       s = mlim_point_grid_next(&level->grid, &walk))
   {
     const int32_t* ends = map->ends + 2 * (size_t)pieces->curves[s];
     if (ends[0] != (int32_t)junction && ends[1] != (int32_t)junction)
@@ -326,6 +345,18 @@ static void limit_junction(mlim_radius_map* map, const mlim_pieces* pieces, size
       const double distance = distance_to_sample_piece(map, point, (size_t)s, &arc);
       mlim_radius_map_lower_junction(map, junction, DISTANCE_SHARE * distance);
     }
+  }
+}
+
+/* Curves that do not end at the junction limit its ball. */
+static void limit_junction(mlim_radius_map* map, const mlim_pieces* pieces, size_t junction)
+{
+  double reach = 0;
+  for (size_t l = 0;
+       l < pieces->level_count && reach_of(pieces, map->junction_limits[junction]) > reach; ++l)
+  {
+    reach = pieces->levels[l].reach;
+    limit_junction_by(map, pieces, junction, &pieces->levels[l]);
   }
 }
 

@@ -1,5 +1,6 @@
 /* The balls' conditions hold on networks of every kind. */
 #include "pieces.h"
+#include "radius_map.h"
 #include "scenes.h"
 #include "vector.h"
 
@@ -233,14 +234,15 @@ static void test_pieces(void)
   size_t short_count = 0;
   size_t long_count = 0;
   CHECK(mlim_pieces_create(&source, &pieces) == MLIM_OK);
+  const mlim_point_grid* grid = &pieces.levels[0].grid;
   for (size_t s = 0; s < SAMPLES; ++s)
   {
     const double* point = points + 3 * s;
     const int is_whole = mlim_pieces_list(&pieces, point, &list);
     mlim_point_walk walk;
     size_t count = 0;
-    for (int32_t p = mlim_point_grid_first(&pieces.grid, point, source.reach, &walk); p >= 0;
-         p = mlim_point_grid_next(&pieces.grid, &walk))
+    for (int32_t p = mlim_point_grid_first(grid, point, pieces.levels[0].reach, &walk); p >= 0;
+         p = mlim_point_grid_next(grid, &walk))
     {
       CHECK(!is_whole || (count < list.count && list.pieces[count] == p &&
                            mlim_distance_squared(list.starts[count], points + 3 * (size_t)p) == 0));
@@ -253,6 +255,56 @@ static void test_pieces(void)
   }
   CHECK(short_count > 0 && long_count > 0);
   mlim_pieces_free(&pieces);
+}
+
+enum
+{
+  RING = 400 /* points of each of two rings */
+};
+
+/* Two rings that face each other. */
+static mlim_curves rings_apart(double distance)
+{
+  static double points[3 * 2 * RING];
+  static int32_t ids[2 * (RING + 1)];
+  static size_t offsets[3] = { 0, RING + 1, 2 * (RING + 1) };
+  for (int p = 0; p < 2 * RING; ++p)
+  {
+    const double angle = 6.283185307179586 * (p % RING) / RING;
+    points[3 * p] = 15 * cos(angle);
+    points[3 * p + 1] = 15 * sin(angle);
+    points[3 * p + 2] = p < RING ? 0 : distance;
+  }
+  for (int k = 0; k < 2 * (RING + 1); ++k)
+  {
+    ids[k] = k / (RING + 1) * RING + k % (RING + 1) % RING;
+  }
+  return (mlim_curves){ .point_count = 2 * RING,
+    .points = points,
+    .curve_count = 2,
+    .curve_offsets = offsets,
+    .curve_points = ids };
+}
+
+/* Small radii follow from what is near, large ones from what is far away: no curve is left out. */
+static void test_limits(void)
+{
+  const mlim_options options = {
+    .edge_size = 24, .ball_radius_scale = 1, .smallest_distance = 0.1
+  };
+  const double most = 24 / 1.5;
+  for (double distance = 0.5; distance < 50; distance *= 1.4)
+  {
+    const mlim_curves curves = rings_apart(distance);
+    const double expected = fmin(0.47 * distance, most);
+    mlim_radius_map map;
+    CHECK(mlim_radius_map_create(&curves, &options, NULL, &map) == MLIM_OK);
+    for (size_t s = 0; s < map.sample_count; ++s)
+    {
+      CHECK(fabs(map.limits[s] - expected) < 1e-9 * most);
+    }
+    mlim_radius_map_free(&map);
+  }
 }
 
 int main(void)
@@ -307,5 +359,6 @@ int main(void)
     }
   }
   test_pieces();
+  test_limits();
   return check_result();
 }
