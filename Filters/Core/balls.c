@@ -36,56 +36,94 @@ void mlim_balls_free(mlim_balls* balls)
   *balls = (mlim_balls){ 0 };
 }
 
+/* The balls of one round: the junctions', then those of each curve. */
+typedef struct round_balls
+{
+  mlim_ball_list list;
+  double* arcs; /* per ball: length along its curve */
+  size_t arc_capacity;
+  size_t* starts; /* per curve: its first ball; one more at the end */
+} round_balls;
+
 /* The cover in the making. */
 typedef struct covering
 {
   const mlim_curves* curves;
   const mlim_options* options;
   mlim_radius_map map;
-  mlim_ball_list list;
-  double* arcs; /* per ball: length along its curve */
-  size_t arc_capacity;
+  round_balls now;
+  round_balls before;      /* of the round before; empty in the first one */
+  unsigned char* is_known; /* per ball: it was there in the round before */
+  size_t known_capacity;
   mlim_span_cover cover; /* of one curve */
-  size_t fault_count;
   size_t lowered_count;
 } covering;
+
+static void round_free(round_balls* round)
+{
+  mlim_ball_list_free(&round->list);
+  mlim_release(round->arcs);
+  mlim_release(round->starts);
+}
 
 static void covering_free(covering* work)
 {
   mlim_radius_map_free(&work->map);
-  mlim_ball_list_free(&work->list);
-  mlim_release(work->arcs);
+  round_free(&work->now);
+  round_free(&work->before);
+  mlim_release(work->is_known);
   mlim_span_cover_free(&work->cover);
 }
 
-static mlim_status add_ball(
-  covering* work, const double center[3], double radius, int32_t curve, int32_t set, double arc)
+static mlim_status covering_reserve(covering* work)
 {
-  const size_t count = work->list.balls.ball_count;
-  if (mlim_reserve(&work->arcs, &work->arc_capacity, count + 1, sizeof(double)))
+  const size_t count = work->curves->curve_count + 1;
+  work->now.starts = mlim_allocate(count, sizeof *work->now.starts);
+  work->before.starts = mlim_allocate(count, sizeof *work->before.starts);
+  return work->now.starts != NULL && work->before.starts != NULL ? MLIM_OK : MLIM_OUT_OF_MEMORY;
+}
+
+typedef struct curve_ball
+{
+  double center[3];
+  double radius;
+  double arc;
+  int32_t curve; /* -1: a junction's */
+  int32_t set;
+  int is_known;
+} curve_ball;
+
+static mlim_status add_ball(covering* work, const curve_ball* ball)
+{
+  round_balls* now = &work->now;
+  const size_t count = now->list.balls.ball_count;
+  if (mlim_reserve(&now->arcs, &now->arc_capacity, count + 1, sizeof *now->arcs) ||
+      mlim_reserve(&work->is_known, &work->known_capacity, count + 1, 1))
   {
     return MLIM_OUT_OF_MEMORY;
   }
-  work->arcs[count] = arc;
-  return mlim_ball_list_add(&work->list, center, radius, curve, set);
+  now->arcs[count] = ball->arc;
+  work->is_known[count] = (unsigned char)ball->is_known;
+  return mlim_ball_list_add(&now->list, ball->center, ball->radius, ball->curve, ball->set);
 }
 
 static mlim_status join_balls(covering* work, size_t curve, size_t first)
 {
   const int32_t* ends = work->map.ends + 2 * curve;
-  const int32_t last = (int32_t)work->list.balls.ball_count - 1;
+  mlim_ball_list* list = &work->now.list;
+  const int32_t last = (int32_t)list->balls.ball_count - 1;
   mlim_status status = MLIM_OK;
   if (ends[0] >= 0)
   {
-    status = mlim_ball_list_join(&work->list, ends[0], (int32_t)first, (int32_t)curve);
+    status = mlim_ball_list_join(list, ends[0], (int32_t)first, (int32_t)curve);
   }
   for (int32_t b = (int32_t)first; b < last && !status; ++b)
   {
-    status = mlim_ball_list_join(&work->list, b, b + 1, (int32_t)curve);
+    status = mlim_ball_list_join(list, b, b + 1, (int32_t)curve);
   }
   return status ? status
                 : mlim_ball_list_join(
-                    &work->list, last, ends[1] >= 0 ? ends[1] : (int32_t)first, (int32_t)curve);
+                    list, last, ends[1] >= 0 ? ends[1] : (int32_t)first, (int32_t)curve);
 }
 
 /* A curve of the map, as a span sees it. */
@@ -102,11 +140,35 @@ static double radius_on_curve(void* user, double arc)
   return mlim_radius_map_radius(on->map, on->curve, arc, &on->near);
 }
 
-static mlim_status cover_curve(covering* work, size_t curve)
+/* A curve whose limits and junctions are what they were has the balls that it had. */
+static int is_as_before(const covering* work, size_t curve)
+{
+  const int32_t* ends = work->map.ends + 2 * curve;
+  return !work->map.is_changed[curve] &&
+         (ends[0] < 0 || (work->is_known[ends[0]] && work->is_known[ends[1]]));
+}
+
+static mlim_status take_balls_before(covering* work, size_t curve)
+{
+  const mlim_balls* balls = &work->before.list.balls;
+  mlim_status status = MLIM_OK;
+  for (size_t b = work->before.starts[curve]; b < work->before.starts[curve + 1] && !status; ++b)
+  {
+    curve_ball ball = { .radius = balls->radii[b],
+      .arc = work->before.arcs[b],
+      .curve = (int32_t)curve,
+      .set = work->curves->curve_sets[curve],
+      .is_known = 1 };
+    mlim_copy(balls->centers + 3 * b, ball.center);
+    status = add_ball(work, &ball);
+  }
+  return status;
+}
+
+static mlim_status make_balls(covering* work, size_t curve)
 {
   const mlim_radius_map* map = &work->map;
   const int32_t* ends = map->ends + 2 * curve;
-  const size_t first = work->list.balls.ball_count;
   const size_t sample_count = map->offsets[curve + 1] - map->offsets[curve];
   map_curve on = { .map = map, .curve = curve };
   mlim_span span = { .length = map->arcs[map->offsets[curve + 1] - 1],
@@ -128,24 +190,51 @@ static mlim_status cover_curve(covering* work, size_t curve)
   mlim_status status = mlim_span_cover_make(&span, &work->cover);
   for (size_t i = 0; i < work->cover.count && !status; ++i)
   {
-    double center[3];
-    mlim_radius_map_point(map, curve, work->cover.arcs[i], center);
-    status = add_ball(work, center, work->cover.radii[i], (int32_t)curve,
-      work->curves->curve_sets[curve], work->cover.arcs[i]);
+    curve_ball ball = { .radius = work->cover.radii[i],
+      .arc = work->cover.arcs[i],
+      .curve = (int32_t)curve,
+      .set = work->curves->curve_sets[curve] };
+    mlim_radius_map_point(map, curve, ball.arc, ball.center);
+    status = add_ball(work, &ball);
   }
+  return status;
+}
+
+static mlim_status cover_curve(covering* work, size_t curve)
+{
+  const size_t first = work->now.list.balls.ball_count;
+  work->now.starts[curve] = first;
+  const mlim_status status =
+    is_as_before(work, curve) ? take_balls_before(work, curve) : make_balls(work, curve);
+  work->now.starts[curve + 1] = work->now.list.balls.ball_count;
+  work->map.is_changed[curve] = 0;
   return status ? status : join_balls(work, curve, first);
+}
+
+static mlim_status cover_junction(covering* work, size_t junction)
+{
+  const mlim_balls* before = &work->before.list.balls;
+  curve_ball ball = { .radius = work->map.junction_limits[junction],
+    .curve = MLIM_JUNCTION,
+    .set = work->curves->junction_sets[junction] };
+  ball.is_known = junction < before->ball_count && before->radii[junction] == ball.radius;
+  mlim_copy(
+    work->curves->points + 3 * (size_t)work->curves->junction_points[junction], ball.center);
+  return add_ball(work, &ball);
 }
 
 static mlim_status cover_all(covering* work)
 {
   const mlim_curves* curves = work->curves;
   mlim_status status = MLIM_OK;
-  work->list.balls.ball_count = 0;
-  work->list.balls.edge_count = 0;
+  const round_balls before = work->before;
+  work->before = work->now;
+  work->now = before;
+  work->now.list.balls.ball_count = 0;
+  work->now.list.balls.edge_count = 0;
   for (size_t j = 0; j < curves->junction_count && !status; ++j)
   {
-    status = add_ball(work, curves->points + 3 * (size_t)curves->junction_points[j],
-      work->map.junction_limits[j], -1, curves->junction_sets[j], 0);
+    status = cover_junction(work, j);
   }
   for (size_t c = 0; c < curves->curve_count && !status; ++c)
   {
@@ -157,18 +246,19 @@ static mlim_status cover_all(covering* work)
 /* Lowers the limit where a ball stands. */
 static void lower(covering* work, mlim_radius_limit which, int32_t ball, double radius)
 {
-  const int32_t curve = work->list.balls.ball_curves[ball];
+  const int32_t curve = work->now.list.balls.ball_curves[ball];
   const int has_changed =
-    curve < 0 ? mlim_radius_map_lower_junction(&work->map, (size_t)ball, radius)
-              : mlim_radius_map_lower(&work->map, which, (size_t)curve, work->arcs[ball], radius);
+    curve < 0
+      ? mlim_radius_map_lower_junction(&work->map, (size_t)ball, radius)
+      : mlim_radius_map_lower(&work->map, which, (size_t)curve, work->now.arcs[ball], radius);
   work->lowered_count += has_changed ? 1 : 0;
 }
 
 /* Balls of two curves that end at one junction keep apart as a wedge. */
 static mlim_radius_limit limit_between(const covering* work, int32_t a, int32_t b)
 {
-  const int32_t c = work->list.balls.ball_curves[a];
-  const int32_t d = work->list.balls.ball_curves[b];
+  const int32_t c = work->now.list.balls.ball_curves[a];
+  const int32_t d = work->now.list.balls.ball_curves[b];
   if (c >= 0 && d >= 0 && c != d)
   {
     const int32_t* ends = work->map.ends + 2 * (size_t)c;
@@ -186,7 +276,7 @@ static mlim_radius_limit limit_between(const covering* work, int32_t a, int32_t 
 
 static void separate(covering* work, int32_t a, int32_t b, double distance)
 {
-  const double* radii = work->list.balls.radii;
+  const double* radii = work->now.list.balls.radii;
   const mlim_radius_limit which = limit_between(work, a, b);
   const double factor = mlim_max(APART_BY * distance / (radii[a] + radii[b]), 0.5 * LOWER_BY);
   if (radii[a] <= MUCH_LARGER * radii[b])
@@ -202,8 +292,7 @@ static void separate(covering* work, int32_t a, int32_t b, double distance)
 static void lower_at_fault(void* user, mlim_ball_fault fault, int32_t a, int32_t b, double distance)
 {
   covering* work = user;
-  const double* radii = work->list.balls.radii;
-  ++work->fault_count;
+  const double* radii = work->now.list.balls.radii;
   switch (fault)
   {
     case MLIM_BALLS_TOUCH:
@@ -231,14 +320,13 @@ static mlim_status cover_until_good(covering* work, mlim_context* context)
   for (int round = 0; round < MAX_ROUNDS; ++round)
   {
     const double done = (double)round / (MAX_ROUNDS + 1);
-    work->fault_count = 0;
     work->lowered_count = 0;
     status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
     status = status ? status : cover_all(work);
     status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, done);
     status = status ? status
-                    : mlim_balls_examine(
-                        work->curves, &work->list.balls, work->options, lower_at_fault, work);
+                    : mlim_balls_examine(work->curves, &work->now.list.balls, work->is_known,
+                        work->options, lower_at_fault, work);
     status =
       status ? status : mlim_progress(context, MLIM_STAGE_BALLS, (round + 1.0) / (MAX_ROUNDS + 1));
     if (status || work->lowered_count == 0)
@@ -264,8 +352,9 @@ mlim_status mlim_balls_cover(
   covering work = { .curves = curves, .options = options };
   mlim_status status = mlim_progress(context, MLIM_STAGE_BALLS, 0);
   status = status ? status : mlim_radius_map_create(curves, options, context, &work.map);
+  status = status ? status : covering_reserve(&work);
   status = status ? status : cover_until_good(&work, context);
-  status = status ? status : mlim_sets_copy(&curves->sets, &work.list.balls.sets);
+  status = status ? status : mlim_sets_copy(&curves->sets, &work.now.list.balls.sets);
   status = status ? status : mlim_progress(context, MLIM_STAGE_BALLS, 1);
   if (status == MLIM_OUT_OF_MEMORY)
   {
@@ -273,7 +362,7 @@ mlim_status mlim_balls_cover(
   }
   if (!status)
   {
-    mlim_ball_list_take(&work.list, out);
+    mlim_ball_list_take(&work.now.list, out);
   }
   covering_free(&work);
   return status;

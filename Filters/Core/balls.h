@@ -35,9 +35,10 @@ typedef void (*mlim_ball_report)(
 mlim_status mlim_balls_check(const mlim_curves* curves, const mlim_balls* balls,
   const mlim_options* options, mlim_ball_counts* out);
 
-/* The same, with a report of each fault. */
+/* The same, with a report of each fault. is_known, unless it is NULL: balls that were there at the last
+   examination; what is among them alone, and was reported then, need not be reported again. */
 mlim_status mlim_balls_examine(const mlim_curves* curves, const mlim_balls* balls,
-  const mlim_options* options, mlim_ball_report report, void* user);
+  const unsigned char* is_known, const mlim_options* options, mlim_ball_report report, void* user);
 
 /* A ball over a spot where sheets touch, or are nearer than can be resolved. */
 typedef struct mlim_contact

@@ -29,6 +29,7 @@ typedef struct examination
 {
   const mlim_curves* curves;
   const mlim_balls* balls;
+  const unsigned char* is_known; /* NULL: none */
   const mlim_options* options;
   mlim_ball_report report;
   void* user;
@@ -96,45 +97,75 @@ static int is_contact(const mlim_balls* balls, size_t ball)
   return balls->ball_curves[ball] == MLIM_CONTACT;
 }
 
+static int is_known(const examination* work, size_t ball)
+{
+  return work->is_known != NULL && work->is_known[ball];
+}
+
+/* The balls before one, and those of them that are new. */
+typedef struct others
+{
+  size_t* starts; /* of a ball's neighbours; one more at the end */
+  int32_t* neighbours;
+  mlim_ball_grid all;
+  mlim_ball_grid fresh;
+} others;
+
+/* May the balls touch? They are neighbours, or one of them is a contact. */
+static int may_touch(const mlim_balls* balls, const others* o, size_t i, int32_t j)
+{
+  int may = is_contact(balls, i) || is_contact(balls, (size_t)j);
+  for (size_t n = o->starts[i]; n < o->starts[i + 1] && !may; ++n)
+  {
+    may = o->neighbours[n] == j;
+  }
+  return may;
+}
+
+/* A ball that is known is compared with the new ones alone. */
+static void examine_pairs(const examination* work, const others* o, size_t i)
+{
+  const mlim_balls* balls = work->balls;
+  const mlim_ball_grid* grid = is_known(work, i) ? &o->fresh : &o->all;
+  const double* center = balls->centers + 3 * i;
+  const double most = balls->radii[i] + grid->largest;
+  mlim_point_walk walk;
+  for (int32_t j = mlim_point_grid_first(&grid->points, center, most, &walk); j >= 0;
+       j = mlim_point_grid_next(&grid->points, &walk))
+  {
+    const double reach = balls->radii[i] + balls->radii[j];
+    if (reach * reach < WELL_APART * mlim_distance_squared(balls->centers + 3 * (size_t)j, center))
+    {
+      continue;
+    }
+    const double d = center_distance(balls, (int32_t)i, j);
+    if (reach >= (1 - DISJOINT_MARGIN) * d && !may_touch(balls, o, i, j))
+    {
+      work->report(work->user, MLIM_BALLS_TOUCH, j, (int32_t)i, d);
+    }
+  }
+}
+
 static mlim_status examine_others(const examination* work)
 {
   const mlim_balls* balls = work->balls;
-  mlim_ball_grid grid = { 0 };
-  size_t* starts = NULL;
-  int32_t* neighbours = NULL;
-  mlim_status status = list_neighbours(balls, &starts, &neighbours);
-  status = status ? status : mlim_ball_grid_create(balls, &grid);
+  others o = { 0 };
+  mlim_status status = list_neighbours(balls, &o.starts, &o.neighbours);
+  status = status ? status : mlim_ball_grid_create(balls, &o.all);
+  status = status ? status : mlim_ball_grid_create(balls, &o.fresh);
   for (size_t i = 0; i < balls->ball_count && !status; ++i)
   {
-    const double* center = balls->centers + 3 * i;
-    mlim_point_walk walk;
-    const double most = balls->radii[i] + grid.largest;
-    for (int32_t j = mlim_point_grid_first(&grid.points, center, most, &walk); j >= 0;
-         j = mlim_point_grid_next(&grid.points, &walk))
+    examine_pairs(work, &o, i);
+    mlim_point_grid_add(&o.all.points, balls->centers + 3 * i, (int32_t)i);
+    if (!is_known(work, i))
     {
-      const double reach = balls->radii[i] + balls->radii[j];
-      if (reach * reach <
-          WELL_APART * mlim_distance_squared(balls->centers + 3 * (size_t)j, center))
-      {
-        continue;
-      }
-      const double d = center_distance(balls, (int32_t)i, j);
-      int is_neighbour =
-        reach < (1 - DISJOINT_MARGIN) * d || is_contact(balls, i) || is_contact(balls, (size_t)j);
-      for (size_t n = starts[i]; n < starts[i + 1] && !is_neighbour; ++n)
-      {
-        is_neighbour = neighbours[n] == j;
-      }
-      if (!is_neighbour)
-      {
-        work->report(work->user, MLIM_BALLS_TOUCH, j, (int32_t)i, d);
-      }
+      mlim_point_grid_add(&o.fresh.points, balls->centers + 3 * i, (int32_t)i);
     }
-    mlim_point_grid_add(&grid.points, center, (int32_t)i);
   }
-  mlim_ball_grid_free(&grid);
-  mlim_release(starts);
-  mlim_release(neighbours);
+  mlim_ball_grid_free(&o.all);
+  mlim_ball_grid_free(&o.fresh);
+  mlim_release(o.starts);
+  mlim_release(o.neighbours);
   return status;
 }
 
@@ -229,7 +260,49 @@ static int is_edge_good(const examination* work, size_t curve, const int32_t end
   return is_piece_good(work, ends, from, work->balls->centers + 3 * (size_t)ends[1]);
 }
 
-/* The edges of a curve are consecutive, and run along it. */
+/* The edges of one curve: are all their balls known? */
+static int are_known(const examination* work, size_t first, size_t end)
+{
+  const int32_t* edges = work->balls->edges;
+  int known = 1;
+  for (size_t edge = first; edge < end && known; ++edge)
+  {
+    known = is_known(work, (size_t)edges[2 * edge]) && is_known(work, (size_t)edges[2 * edge + 1]);
+  }
+  return known;
+}
+
+static size_t count_points(const examination* work, size_t curve)
+{
+  return work->curves->curve_offsets[curve + 1] - work->curves->curve_offsets[curve];
+}
+
+/* They run along the curve. */
+static void examine_pieces(const examination* work, size_t curve, size_t first, size_t end)
+{
+  const mlim_balls* balls = work->balls;
+  curve_place place = { .piece = 0, .part = 0 };
+  for (size_t edge = first; edge < end; ++edge)
+  {
+    const int32_t* ends = balls->edges + 2 * edge;
+    const int is_last = edge + 1 == end;
+    const curve_place begin = place;
+    /* The last centre may be the curve's end, where an earlier place would be found first. */
+    const int is_found =
+      is_last || find_place(work, curve, balls->centers + 3 * (size_t)ends[1], &place);
+    if (is_last)
+    {
+      place = (curve_place){ .piece = count_points(work, curve) - 2, .part = 1 };
+    }
+    if (!is_found || !is_edge_good(work, curve, ends, &begin, &place))
+    {
+      work->report(
+        work->user, MLIM_BALLS_STRAY, ends[0], ends[1], center_distance(balls, ends[0], ends[1]));
+    }
+  }
+}
+
+/* The edges of a curve are consecutive. */
 static void examine_curves(const examination* work)
 {
   const mlim_balls* balls = work->balls;
@@ -237,28 +310,15 @@ static void examine_curves(const examination* work)
   for (size_t curve = 0; curve < work->curves->curve_count; ++curve)
   {
     const size_t first = edge;
-    const size_t count =
-      work->curves->curve_offsets[curve + 1] - work->curves->curve_offsets[curve];
-    curve_place place = { .piece = 0, .part = 0 };
-    for (; edge < balls->edge_count && balls->edge_curves[edge] == (int32_t)curve; ++edge)
+    while (edge < balls->edge_count && balls->edge_curves[edge] == (int32_t)curve)
     {
-      const int32_t* ends = balls->edges + 2 * edge;
-      const int is_last =
-        edge + 1 == balls->edge_count || balls->edge_curves[edge + 1] != (int32_t)curve;
-      const curve_place begin = place;
-      /* The last centre may be the curve's end, where an earlier place would be found first. */
-      const int is_found =
-        is_last || find_place(work, curve, balls->centers + 3 * (size_t)ends[1], &place);
-      if (is_last)
-      {
-        place = (curve_place){ .piece = count - 2, .part = 1 };
-      }
-      if (!is_found || !is_edge_good(work, curve, ends, &begin, &place))
-      {
-        work->report(
-          work->user, MLIM_BALLS_STRAY, ends[0], ends[1], center_distance(balls, ends[0], ends[1]));
-      }
+      ++edge;
     }
+    if (!are_known(work, first, edge))
+    {
+      examine_pieces(work, curve, first, edge);
+    }
+    const size_t count = count_points(work, curve);
     const int is_closed =
       curve_point(work->curves, curve, 0) == curve_point(work->curves, curve, count - 1);
     if (edge - first < (is_closed ? MIN_LOOP_EDGES : MIN_OPEN_EDGES))
@@ -269,11 +329,14 @@ static void examine_curves(const examination* work)
 }
 
 mlim_status mlim_balls_examine(const mlim_curves* curves, const mlim_balls* balls,
-  const mlim_options* options, mlim_ball_report report, void* user)
+  const unsigned char* is_known, const mlim_options* options, mlim_ball_report report, void* user)
 {
-  const examination work = {
-    .curves = curves, .balls = balls, .options = options, .report = report, .user = user
-  };
+  const examination work = { .curves = curves,
+    .balls = balls,
+    .is_known = is_known,
+    .options = options,
+    .report = report,
+    .user = user };
   examine_neighbours(&work);
   if (curves)
   {
@@ -315,5 +378,5 @@ mlim_status mlim_balls_check(const mlim_curves* curves, const mlim_balls* balls,
   const mlim_options* options, mlim_ball_counts* out)
 {
   *out = (mlim_ball_counts){ 0 };
-  return mlim_balls_examine(curves, balls, options, count_fault, out);
+  return mlim_balls_examine(curves, balls, NULL, options, count_fault, out);
 }

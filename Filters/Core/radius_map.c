@@ -52,6 +52,7 @@ void mlim_radius_map_free(mlim_radius_map* map)
   mlim_release(map->ends);
   mlim_release(map->junction_limits);
   mlim_release(map->is_lowered);
+  mlim_release(map->is_changed);
   *map = (mlim_radius_map){ 0 };
 }
 
@@ -92,8 +93,9 @@ static mlim_status allocate_samples(mlim_radius_map* map, double step)
   map->ends = mlim_allocate(curves->curve_count, 2 * sizeof(int32_t));
   map->junction_limits = mlim_allocate(curves->junction_count, sizeof(double));
   map->is_lowered = mlim_allocate(curves->curve_count, 1);
+  map->is_changed = mlim_allocate(curves->curve_count, 1);
   return map->points && map->arcs && map->limits && map->wedges && map->ends &&
-             map->junction_limits && map->is_lowered
+             map->junction_limits && map->is_lowered && map->is_changed
            ? MLIM_OK
            : MLIM_OUT_OF_MEMORY;
 }
@@ -125,6 +127,7 @@ static void place_samples(mlim_radius_map* map, double step)
     }
   }
   memset(map->is_lowered, 1, curves->curve_count);
+  memset(map->is_changed, 1, curves->curve_count);
   for (size_t s = 0; s < map->sample_count; ++s)
   {
     map->limits[s] = map->first_radius;
@@ -466,6 +469,7 @@ static int grade_with_ends(mlim_radius_map* map, size_t curve)
   has_changed |= equalise(values[1], map->limits + last);
   grade_curve(map->arcs + first, map->wedges + first, last - first + 1);
   map->is_lowered[curve] = map->limits[last] < graded; /* both ends are one place */
+  map->is_changed[curve] = 1;
   return has_changed;
 }
 
@@ -564,6 +568,7 @@ int mlim_radius_map_lower(
     limits[i] = mlim_min(limits[i], limit);
   }
   map->is_lowered[curve] |= (unsigned char)has_changed;
+  map->is_changed[curve] |= (unsigned char)has_changed;
   return has_changed;
 }
 

@@ -21,6 +21,8 @@ typedef struct mlim_radius_map
   int32_t* ends;   /* 2 per curve: its junctions; -1 for a closed curve without */
   double* junction_limits;
   unsigned char* is_lowered; /* a curve: its own limits have fallen since it was graded */
+  unsigned char*
+    is_changed; /* a curve: limits may have fallen since the user took this back; 1 at first */
 } mlim_radius_map;
 
 /* Looks at the host between samples. */
