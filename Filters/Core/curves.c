@@ -44,15 +44,20 @@ typedef struct tracing
   mlim_status* statuses;
 } tracing;
 
+/* A cell of two labels has no curve inside. */
 static mlim_status trace_layer(mlim_cell_work* work, int32_t layer)
 {
   mlim_status status = MLIM_OK;
   int32_t cell[3] = { 0, 0, layer };
   for (cell[1] = 0; cell[1] < work->grid->cells[1]; ++cell[1])
   {
-    for (cell[0] = 0; cell[0] < work->grid->cells[0] && !status; ++cell[0])
+    cell[0] = 0;
+    cell[0] = mlim_field_find_many(work->field, cell);
+    while (cell[0] < work->grid->cells[0] && !status)
     {
       status = mlim_cell_trace(work, cell);
+      ++cell[0];
+      cell[0] = mlim_field_find_many(work->field, cell);
     }
   }
   return status;

@@ -96,6 +96,33 @@ mlim_candidates mlim_field_cell(
   return out;
 }
 
+int32_t mlim_field_find_many(const mlim_field* field, const int32_t from[3])
+{
+  const uint32_t many = (uint32_t)MIXED | (uint32_t)MANY;
+  const int32_t count = field->grid.cells[0];
+  int32_t cell[3] = { from[0], from[1], from[2] };
+  while (cell[0] < count)
+  {
+    const uint32_t brick = field->coarse[field_brick_of(field, cell)];
+    const int32_t end = (cell[0] / BRICK + 1) * BRICK;
+    if (!(brick & (uint32_t)MIXED))
+    {
+      cell[0] = end;
+      continue;
+    }
+    const uint32_t* word =
+      field->layers[cell[2] / BRICK].words + (brick & DETAIL) * BRICK_CELLS + field_slot_of(cell);
+    for (; cell[0] < end && cell[0] < count; ++cell[0], ++word)
+    {
+      if ((*word & many) == many)
+      {
+        return cell[0];
+      }
+    }
+  }
+  return count;
+}
+
 /* Trilinear interpolation of corner values, in double. */
 static double trilinear(const uint32_t* values, const double at[3])
 {

@@ -44,6 +44,10 @@ typedef struct mlim_cell_buffer
 mlim_candidates mlim_field_cell(
   const mlim_field* field, const int32_t cell[3], const mlim_cell_buffer* buffer);
 
+/* The first cell of a row along x, from one on, with three candidates or more: its place along x; as many as
+   there are cells when there is none. */
+int32_t mlim_field_find_many(const mlim_field* field, const int32_t from[3]);
+
 /* Label of a grid point (the best one there), and the labels of all of them, x fastest; borrowed. */
 int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3]);
 const uint16_t* mlim_field_point_labels(const mlim_field* field);
