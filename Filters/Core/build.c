@@ -8,6 +8,7 @@
 #include "pinch.h"
 #include "quality.h"
 #include "refine.h"
+#include "refine_contacts.h"
 #include "refine_disks.h"
 #include "seeds.h"
 #include "spots.h"
@@ -34,7 +35,6 @@ typedef struct build
   mlim_balls balls; /* own: after pruning and splitting */
   const mlim_balls* used_balls;
   size_t hidden_ball_count;
-  size_t insertion_count; /* of the passes before this one */
   mlim_tidied tidied;
   int has_volume;         /* wanted: the complex is needed to the end */
   double done;            /* of the certificate's stage */
@@ -82,17 +82,31 @@ static mlim_status seed(build* b, int has_points)
 }
 
 /* Replaces the balls by others made from them. */
-static void take_balls(build* b, mlim_balls* balls)
+static void take_balls(build* b, const mlim_balls* balls)
 {
-  b->insertion_count += b->refinement.insertion_count;
-  mlim_refine_free(&b->refinement);
   mlim_balls_free(&b->balls);
   b->balls = *balls;
   b->used_balls = &b->balls;
 }
 
-/* Starts with all balls that do not hide each other. */
-static mlim_status start(build* b, mlim_known* known)
+/* Puts balls into the triangulation; those that hide others or are hidden are marked and counted. */
+typedef mlim_status (*ball_step)(build* b, unsigned char* is_hidden, size_t* count);
+
+static mlim_status start(build* b, unsigned char* is_hidden, size_t* count)
+{
+  const double progress = b->refinement.progress;
+  mlim_refine_free(&b->refinement);
+  return mlim_refine_start(
+    &b->refinement, &b->oracle, b->used_balls, b->options, progress, b->context, is_hidden, count);
+}
+
+static mlim_status enter(build* b, unsigned char* is_hidden, size_t* count)
+{
+  return mlim_contacts_enter(&b->refinement, b->context, is_hidden, count);
+}
+
+/* With all balls that do not hide each other. */
+static mlim_status put_balls(build* b, ball_step step)
 {
   enum
   {
@@ -107,8 +121,7 @@ static mlim_status start(build* b, mlim_known* known)
                                : mlim_balls_find_held(b->used_balls, b->context, is_hidden, &count);
     if (status == MLIM_OK && count == 0)
     {
-      status = mlim_refine_start(&b->refinement, &b->oracle, b->used_balls, known, b->options,
-        b->context, is_hidden, &count);
+      status = step(b, is_hidden, &count);
     }
     mlim_balls pruned = { 0 };
     if (status == MLIM_OK && count > 0)
@@ -121,57 +134,50 @@ static mlim_status start(build* b, mlim_known* known)
       return status;
     }
     b->hidden_ball_count += count;
-    known->progress = mlim_max(known->progress, b->refinement.progress);
     take_balls(b, &pruned);
   }
   return mlim_fail(b->context, MLIM_INVALID_ARGUMENT,
     "The protecting balls hide each other; no ball may hold the centre of another one.");
 }
 
-static mlim_status refine_from_balls(build* b, mlim_known* known)
+static mlim_status refine_from_balls(build* b, ball_step step)
 {
-  mlim_status status = start(b, known);
+  mlim_status status = put_balls(b, step);
   if (status == MLIM_OK)
   {
-    status = seed(b, known->count > 0);
+    status = seed(b, step == enter);
   }
   return status == MLIM_OK ? mlim_refine_run(&b->refinement, MLIM_GOAL_TOPOLOGY, b->context)
                            : status;
 }
 
-/* What the pass before has sampled away from the new contacts goes in again as it is. */
 static mlim_status cover_spots(build* b, size_t* count)
 {
   mlim_balls balls;
-  mlim_known known;
-  mlim_status status = mlim_spots_cover(&b->refinement, b->used_balls, b->context, &balls, count);
+  const mlim_status status =
+    mlim_spots_cover(&b->refinement, b->used_balls, b->context, &balls, count);
   if (status != MLIM_OK || *count == 0)
   {
     return status;
   }
-  status =
-    mlim_known_keep(&b->refinement.complex, &balls, b->refinement.progress, b->context, &known);
   take_balls(b, &balls);
-  status = status == MLIM_OK ? refine_from_balls(b, &known) : status;
-  mlim_known_free(&known);
-  return status;
+  return refine_from_balls(b, enter);
 }
 
 /* Topology first, while the triangulation is small: what cannot be resolved is covered by contacts, and
-   the triangulation made anew from the balls. */
+   sampled anew round them. */
 static mlim_status refine_topology(build* b)
 {
   enum
   {
     MAX_ROUNDS = 2 /* a third one finds a fifth of the first, and changes little */
   };
-  mlim_known nothing = { 0 };
   mlim_balls trimmed;
   mlim_status status = mlim_bends_trim(b->field, b->used_balls, b->options, b->context, &trimmed);
   if (status == MLIM_OK)
   {
     take_balls(b, &trimmed);
-    status = refine_from_balls(b, &nothing);
+    status = refine_from_balls(b, start);
   }
   size_t count = 1;
   for (int round = 0; round < MAX_ROUNDS && status == MLIM_OK && count > 0; ++round)
@@ -253,7 +259,7 @@ static mlim_status count_unresolved(build* b, mlim_mesh* out)
   mlim_report* report = &out->report;
   const mlim_status status =
     mlim_unresolved_count(&b->refinement.complex, b->options, b->done, b->context, report);
-  report->insertion_count = b->insertion_count + b->refinement.insertion_count;
+  report->insertion_count = b->refinement.insertion_count;
   report->relabeled_cell_count = b->tidied.change_count;
   report->hidden_ball_count = b->hidden_ball_count;
   report->unresolved_patch_count = b->tidied.stray_count;

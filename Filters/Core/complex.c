@@ -264,13 +264,11 @@ static void empty_zone(mlim_complex* complex)
   }
 }
 
-/* A new cell has no label before the next update. Room in `made` is there. */
-static void take_new_cell(mlim_complex* complex, int32_t id)
+void mlim_complex_take_new_cell(mlim_complex* complex, int32_t cell)
 {
-  mlim_complex_take_cell(complex, id);
-  mlim_cell* cell = &complex->cells[id];
-  cell->label = MLIM_NO_LABEL;
-  complex->made[complex->made_count++] = id;
+  mlim_complex_take_cell(complex, cell);
+  complex->cells[cell].label = MLIM_NO_LABEL;
+  complex->made[complex->made_count++] = cell;
 }
 
 /* The record of the facet opposite to the new vertex goes over from the cell outside. */
@@ -321,7 +319,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   }
   for (size_t k = 0; k < made.count; ++k)
   {
-    take_new_cell(complex, made.cells[k]);
+    mlim_complex_take_new_cell(complex, made.cells[k]);
     inherit_record(complex, made.cells[k]);
   }
   return MLIM_OK;
@@ -339,7 +337,7 @@ mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context)
   {
     if (complex->cells[c].vertices[0] >= 0)
     {
-      take_new_cell(complex, (int32_t)c);
+      mlim_complex_take_new_cell(complex, (int32_t)c);
     }
   }
   for (size_t v = 0; v < complex->vertex_count; ++v)

@@ -4,7 +4,8 @@
    A cell has the label of its power centre. A facet is restricted if its two cells differ in label;
    it is recorded also if they do not but its dual crosses an interface all the same.
 
-   An insertion only shortens the duals of the facets round its zone. So a dual that was found free
+   An insertion only shortens the duals of the facets round its zone; a removal, which lengthens them, leaves
+   nothing known about them. So a dual that was found free
    of crossings stays so, and a single crossing stays where it is or vanishes: its record passes from
    the dead cell to the new one, until records.h finds that the labels contradict it. */
 #ifndef mlim_complex_h
@@ -93,6 +94,12 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
    them to the triangulation. */
 mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context);
 
+/* Takes out the marked vertices, one byte each and no far one; the others close up (delaunay.h). All has to be
+   recorded and no vertex dirty, as after a run; it is to be brought up to date afterwards, as after
+   insertions. */
+mlim_status mlim_complex_remove(
+  mlim_complex* complex, const unsigned char* is_marked, double done, mlim_context* context);
+
 /* Borrows the vertices anew after an insertion: the new one has the kind, ball and sheet of `last`. */
 void mlim_complex_borrow_vertices(mlim_complex* complex, const mlim_vertex* last);
 
@@ -100,6 +107,9 @@ void mlim_complex_borrow_vertices(mlim_complex* complex, const mlim_vertex* last
    For what goes in without being recorded: the inside of volumes. */
 void mlim_complex_borrow_cells(mlim_complex* complex);
 void mlim_complex_take_cell(mlim_complex* complex, int32_t cell);
+
+/* The same for a cell to be recorded: it has no label before the next update. Room in `made` is there. */
+void mlim_complex_take_new_cell(mlim_complex* complex, int32_t cell);
 
 /* Notes that a vertex's star has changed; that of all vertices of a facet; that a cell's label was changed
    from outside, and with it the stars of its vertices. */

@@ -143,6 +143,7 @@ mlim_status mlim_delaunay_create(const double size[3], mlim_context* context, ml
   {
     return mlim_fail_memory(context, "the triangulation");
   }
+  memcpy(d->size, size, sizeof d->size);
   mlim_status status = make_far_vertices(d, size, context);
   status = status == MLIM_OK ? make_first_cells(d, context) : status;
   if (status != MLIM_OK)

@@ -121,4 +121,11 @@ mlim_status mlim_delaunay_find(mlim_delaunay* delaunay, const double point[3], d
 mlim_status mlim_delaunay_fill(
   mlim_delaunay* delaunay, mlim_context* context, mlim_delaunay_zone* out);
 
+/* Takes out the marked vertices, one byte each and no far one, as if they had never been inserted. The others
+   keep their order and close up: the id of each becomes smaller by the marked ones before it. Cells of marked
+   vertices are dead, and `out` lists those in their place; all others keep their ids. `done` is reported as
+   the share of the surface's stage. On failure nothing has changed. */
+mlim_status mlim_delaunay_remove(mlim_delaunay* delaunay, const unsigned char* is_marked,
+  double done, mlim_context* context, mlim_delaunay_zone* out);
+
 #endif

@@ -24,6 +24,7 @@ typedef struct delaunay_point
 
 struct mlim_delaunay
 {
+  double size[3]; /* of the box */
   mlim_cell* cells;
   mlim_power_sphere* spheres;
   size_t cell_count, cell_capacity, sphere_capacity;

@@ -18,22 +18,6 @@ enum
 
 /* ---- start ---- */
 
-/* NULL: out of memory. */
-static mlim_placed* order_points(const mlim_refinement* r, const double* points, size_t count)
-{
-  mlim_placed* order = mlim_allocate(count, sizeof *order);
-  for (size_t v = 0; order != NULL && v < count; ++v)
-  {
-    order[v] =
-      (mlim_placed){ .place = mlim_queue_place(&r->queue, points + 3 * v), .id = (int32_t)v };
-  }
-  if (order != NULL)
-  {
-    mlim_queue_sort(order, count);
-  }
-  return order;
-}
-
 static double expect_vertices(const mlim_refinement* r)
 {
   const double* size = mlim_field_grid_of(r->complex.oracle.field)->size;
@@ -41,68 +25,59 @@ static double expect_vertices(const mlim_refinement* r)
   return 1000 + area / (r->options->facet_size * r->options->facet_size);
 }
 
-/* *is_hidden: it has no room among the vertices that are there, or would take that of another. */
-static mlim_status insert_first(mlim_refinement* r, const mlim_vertex* vertex, size_t number,
-  mlim_context* context, int* is_hidden)
+/* *is_found: it has room among the vertices that are there, and does not take that of another. */
+static mlim_status insert_ball(
+  mlim_refinement* r, int32_t ball, mlim_context* context, int* is_found)
 {
-  int is_found;
-  mlim_status status =
-    mlim_complex_probe(&r->complex, vertex, MLIM_NO_CELL, MLIM_START_NEAR, context, &is_found);
-  *is_hidden = status == MLIM_OK && !is_found;
-  if (is_found)
-  {
-    status = mlim_complex_commit(&r->complex, context);
-  }
-  return status == MLIM_OK && number % LOOK_EVERY_BALLS == 0 ? mlim_refine_report(r, context)
-                                                             : status;
+  const mlim_balls* balls = r->complex.balls;
+  mlim_vertex vertex = {
+    .kind = MLIM_VERTEX_BALL, .ball = ball, .weight = balls->radii[ball] * balls->radii[ball]
+  };
+  mlim_copy(balls->centers + 3 * (size_t)ball, vertex.point);
+  const mlim_status status =
+    mlim_complex_probe(&r->complex, &vertex, MLIM_NO_CELL, MLIM_START_NEAR, context, is_found);
+  return *is_found ? mlim_complex_commit(&r->complex, context) : status;
 }
 
-static mlim_status insert_balls(mlim_refinement* r, const mlim_balls* balls, mlim_context* context,
-  unsigned char* is_hidden, size_t* hidden_count)
+mlim_status mlim_refine_insert_balls(mlim_refinement* refinement, const unsigned char* is_there,
+  mlim_context* context, unsigned char* is_hidden, size_t* hidden_count)
 {
-  mlim_placed* order = order_points(r, balls->centers, balls->ball_count);
+  mlim_refinement* r = refinement;
+  const mlim_balls* balls = r->complex.balls;
+  mlim_placed* order = mlim_allocate(balls->ball_count, sizeof *order);
+  size_t count = 0;
+  for (size_t b = 0; b < balls->ball_count && order != NULL; ++b)
+  {
+    order[count] = (mlim_placed){ .place = mlim_queue_place(&r->queue, balls->centers + 3 * b),
+      .id = (int32_t)b };
+    count += is_there == NULL || !is_there[b];
+  }
   mlim_status status = order == NULL ? mlim_fail_memory(context, "the protecting balls") : MLIM_OK;
-  for (size_t k = 0; k < balls->ball_count && status == MLIM_OK; ++k)
+  if (count > 1)
   {
-    const int32_t b = order[k].id;
-    mlim_vertex vertex = {
-      .kind = MLIM_VERTEX_BALL, .ball = b, .weight = balls->radii[b] * balls->radii[b]
-    };
-    int hides;
-    mlim_copy(balls->centers + 3 * (size_t)b, vertex.point);
-    status = insert_first(r, &vertex, k, context, &hides);
-    if (status == MLIM_OK && hides)
-    {
-      is_hidden[b] = 1;
-      ++*hidden_count;
-    }
+    mlim_queue_sort(order, count);
   }
-  mlim_release(order);
-  return status;
-}
-
-static mlim_status insert_known(mlim_refinement* r, const mlim_known* known, mlim_context* context)
-{
-  mlim_placed* order = order_points(r, known->points, known->count);
-  mlim_status status = order == NULL ? mlim_fail_memory(context, "the triangulation") : MLIM_OK;
-  for (size_t k = 0; k < known->count && status == MLIM_OK; ++k)
+  *hidden_count = 0;
+  memset(is_hidden, 0, balls->ball_count);
+  for (size_t k = 0; k < count && status == MLIM_OK; ++k)
   {
-    const size_t v = (size_t)order[k].id;
-    mlim_vertex vertex = { .kind = MLIM_VERTEX_SURFACE, .ball = -1, .sheet = known->sheets[v] };
-    int is_hidden;
-    mlim_copy(known->points + 3 * v, vertex.point);
-    status = insert_first(r, &vertex, k, context, &is_hidden);
+    int is_found = 0;
+    status = insert_ball(r, order[k].id, context, &is_found);
+    is_hidden[order[k].id] = !is_found;
+    *hidden_count += !is_found;
+    status =
+      status == MLIM_OK && k % LOOK_EVERY_BALLS == 0 ? mlim_refine_report(r, context) : status;
   }
   mlim_release(order);
   return status;
 }
 
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
-  const mlim_balls* balls, const mlim_known* known, const mlim_options* options,
-  mlim_context* context, unsigned char* is_hidden, size_t* hidden_count)
+  const mlim_balls* balls, const mlim_options* options, double progress, mlim_context* context,
+  unsigned char* is_hidden, size_t* hidden_count)
 {
   mlim_refinement* r = refinement;
-  *r = (mlim_refinement){ .options = options, .progress = known->progress };
+  *r = (mlim_refinement){ .options = options, .progress = progress };
   mlim_queue_start(&r->queue, mlim_field_grid_of(oracle->field)->size);
   mlim_status status = mlim_complex_create(oracle, balls, context, &r->complex);
   r->complex.vertex_limit = options->vertex_limit + MLIM_FAR_VERTICES;
@@ -112,15 +87,12 @@ mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* or
   }
   if (status == MLIM_OK)
   {
-    memset(is_hidden, 0, balls->ball_count);
-    *hidden_count = 0;
     r->expected_vertices = expect_vertices(r);
-    status = insert_balls(r, balls, context, is_hidden, hidden_count);
+    status = mlim_refine_insert_balls(r, NULL, context, is_hidden, hidden_count);
   }
   if (status == MLIM_OK && *hidden_count == 0)
   {
-    status = insert_known(r, known, context);
-    status = status == MLIM_OK ? mlim_complex_take_all(&r->complex, context) : status;
+    status = mlim_complex_take_all(&r->complex, context);
     status = status == MLIM_OK ? mlim_refine_update(r, context) : status;
   }
   if (status != MLIM_OK)

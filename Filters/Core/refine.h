@@ -4,7 +4,6 @@
 #define mlim_refine_h
 
 #include "disk.h"
-#include "known.h"
 #include "queue.h"
 #include "records.h"
 
@@ -28,11 +27,15 @@ typedef struct mlim_refinement
   double progress;          /* last reported */
 } mlim_refinement;
 
-/* Inserts the balls and then what is known from a pass with other balls, records the complex; the caller seeds it. Balls that lie
-   inside others or hold the centre of one are marked (one byte each) and counted; if there are any,
-   they have to be taken out and the start made again: nothing is recorded then. */
+/* Inserts the balls and records the complex; the caller seeds it. `progress` has been reported before: none
+   below it will be. Balls that lie inside others or hold the centre of one are marked (one byte each) and
+   counted; if there are any, they have to be taken out and the start made again: nothing is recorded then. */
 mlim_status mlim_refine_start(mlim_refinement* refinement, const mlim_oracle* oracle,
-  const mlim_balls* balls, const mlim_known* known, const mlim_options* options,
+  const mlim_balls* balls, const mlim_options* options, double progress, mlim_context* context,
+  unsigned char* is_hidden, size_t* hidden_count);
+/* Inserts the complex's balls, but those that are there (one byte each; NULL: none), in the order of their
+   places. Marks and counts are as above; the others are inserted all the same. */
+mlim_status mlim_refine_insert_balls(mlim_refinement* refinement, const unsigned char* is_there,
   mlim_context* context, unsigned char* is_hidden, size_t* hidden_count);
 void mlim_refine_free(mlim_refinement* refinement);
 

@@ -131,9 +131,8 @@ static void test_fixed_point(int kind)
   size_t count;
   CHECK(mlim_components_find(r.field, NULL, &components) == MLIM_OK);
   unsigned char* is_hidden = calloc(r.balls.ball_count + 1, 1);
-  const mlim_known nothing = { 0 };
-  CHECK(mlim_refine_start(&refinement, &oracle, &r.balls, &nothing, &r.options, NULL, is_hidden,
-          &count) == MLIM_OK);
+  CHECK(mlim_refine_start(&refinement, &oracle, &r.balls, &r.options, 0, NULL, is_hidden, &count) ==
+        MLIM_OK);
   CHECK_COUNT(count, 0);
   free(is_hidden);
   CHECK(
