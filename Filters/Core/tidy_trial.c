@@ -292,7 +292,11 @@ mlim_status tidy_trial_refine(tidy_trial* trial, mlim_refinement* refinement, do
   /* As long as the changes are there: elsewhere this holds again afterwards. */
   mlim_status status = mlim_disks_settle(r, done, context);
   take_back(trial, &r->complex);
-  status = status == MLIM_OK ? refine(trial, r, &within) : status;
+  if (status != MLIM_OK)
+  {
+    return status;
+  }
+  status = refine(trial, r, &within);
   trial->record_count = 0;
   if (status == MLIM_VERTEX_LIMIT)
   {

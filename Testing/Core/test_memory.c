@@ -53,8 +53,15 @@ static double indicator(const double at[3], int label)
   return label == 0 ? 0 : label == 1 ? fmin(1.7 - r, at[0] - 1.4) : fmin(1.7 - r, 1.4 - at[0]);
 }
 
+/* Two spheres whose edge is a ring so small that contacts take the place of its balls. */
+static double near_spheres(const double at[3], int label)
+{
+  return label == 0 ? 0 : 2 - shape_distance(at, label == 1 ? 2.3 : 6.2, 2.5, 2.6);
+}
+
 static const double SPACING[3] = { 1, 1, 1 };
 static const int32_t DIMS[3] = { SIDE, SIDE, SIDE };
+static const int32_t LONG_DIMS[3] = { 2 * SIDE, SIDE + 1, SIDE + 1 };
 
 static mlim_status run_failing(const image* im, size_t failing)
 {
@@ -127,13 +134,12 @@ static void test_map(void)
   free(scene.values);
 }
 
-/* Seconds of processor time: sanitizers are slow, so they try fewer allocations. Runs that
+/* Seconds of processor time a scene: sanitizers are slow, so they try fewer allocations. Runs that
    fail take half as long as the one that is measured. */
-static const double TIME_LIMIT = 30;
+static const double TIME_LIMIT = 15;
 
-int main(void)
+static void test_scene(const image* im)
 {
-  image* im = image_sample(DIMS, SPACING, 3, 0, indicator);
   CHECK(run_failing(im, 0) == MLIM_OK); /* also makes what is made once in a process */
   const clock_t begin = clock();
   CHECK(run_failing(im, 0) == MLIM_OK);
@@ -154,6 +160,25 @@ int main(void)
   }
   CHECK_COUNT(unexpected, 0);
   CHECK(run_failing(im, 0) == MLIM_OK);
+}
+
+static void check_contacts(const image* im)
+{
+  const mlim_options options = run_options(0);
+  run r;
+  CHECK(run_grid(&im->grid, &options, NULL, &r) == MLIM_OK);
+  CHECK(r.mesh.contact_count > 0);
+  run_free(&r);
+}
+
+int main(void)
+{
+  image* im = image_sample(DIMS, SPACING, 3, 0, indicator);
+  test_scene(im);
+  image_free(im);
+  im = image_sample(LONG_DIMS, SPACING, 3, 0, near_spheres);
+  check_contacts(im);
+  test_scene(im);
   image_free(im);
   test_map();
   return check_result();
