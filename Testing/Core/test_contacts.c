@@ -1,4 +1,5 @@
 /* Contacts that enter a complex in place: afterwards it is as if made with them, and known as well. */
+#include "audit.h"
 #include "refine_contacts.h"
 #include "seeds.h"
 #include "shapes.h"
@@ -251,9 +252,69 @@ static void test_entry(void)
   mlim_balls_free(&second);
 }
 
+/* ---- the whole ---- */
+
+/* One item a range, the last one first. */
+static void backwards(void* user, size_t count, mlim_body body, void* job)
+{
+  (void)user;
+  for (size_t k = count; k > 0; --k)
+  {
+    body(job, k - 1, k);
+  }
+}
+
+/* The mesh round contacts is sound, and does not depend on the order of parallel work. */
+static void test_mesh(void)
+{
+  image* im = image_sample(DIMS, SPACING, 3, 0, near_spheres);
+  const mlim_options options = run_options(0);
+  mlim_context context = { .parallel_for = backwards };
+  run first;
+  run second;
+  CHECK(run_grid(&im->grid, &options, NULL, &first) == MLIM_OK);
+  CHECK(run_grid(&im->grid, &options, &context, &second) == MLIM_OK);
+  const mlim_mesh* a = &first.mesh;
+  const mlim_mesh* b = &second.mesh;
+  CHECK(a->contact_count > 0);
+  CHECK_COUNT(a->certificate.disk_failure_count, 0);
+  CHECK_COUNT(a->certificate.lost_component_count, 0);
+  audit_partition(first.field, a);
+  CHECK_COUNT(a->vertex_count, b->vertex_count);
+  CHECK_COUNT(a->triangle_count, b->triangle_count);
+  if (a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count)
+  {
+    CHECK(memcmp(a->vertices, b->vertices, 3 * a->vertex_count * sizeof *a->vertices) == 0);
+    CHECK(memcmp(a->triangles, b->triangles, 3 * a->triangle_count * sizeof *a->triangles) == 0);
+  }
+  run_free(&first);
+  run_free(&second);
+  image_free(im);
+}
+
+/* Stopped at the limit while contacts enter, or at any other time, what is there is still a mesh. */
+static void test_limit(void)
+{
+  image* im = image_sample(DIMS, SPACING, 3, 0, near_spheres);
+  mlim_options options = run_options(0);
+  for (size_t limit = 10; limit < 400; limit += 13)
+  {
+    run r;
+    options.vertex_limit = limit;
+    const mlim_status status = run_grid(&im->grid, &options, NULL, &r);
+    CHECK(status == MLIM_OK || status == MLIM_VERTEX_LIMIT);
+    CHECK(r.mesh.vertex_count <= limit);
+    audit_partition(r.field, &r.mesh);
+    run_free(&r);
+  }
+  image_free(im);
+}
+
 int main(void)
 {
   test_removal();
   test_entry();
+  test_mesh();
+  test_limit();
   return check_result();
 }
