@@ -72,13 +72,8 @@ static mlim_sheet sheet_between(int32_t from, int32_t to, int32_t face)
     .face = (signed char)face };
 }
 
-void mlim_dual_cross(const mlim_oracle* oracle, mlim_dual* dual)
+static void take(const mlim_crossing* crossing, size_t count, mlim_dual* dual)
 {
-  const mlim_segment segment = { .ends = { dual->ends[0], dual->ends[1] },
-    .labels = { dual->labels[0], dual->labels[1] },
-    .clearances = { dual->clearances[0], dual->clearances[1] } };
-  mlim_crossing crossing[MAX_CROSSINGS];
-  const size_t count = mlim_oracle_crossings_between(oracle, &segment, MAX_CROSSINGS, crossing);
   dual->crosses = count > 0;
   if (count > 0)
   {
@@ -86,5 +81,28 @@ void mlim_dual_cross(const mlim_oracle* oracle, mlim_dual* dual)
     mlim_copy(far->point, dual->crossing);
     dual->sheet = sheet_between(far->from, far->to, far->face);
     dual->is_multiple = count > 1 || dual->labels[0] == dual->labels[1];
+  }
+}
+
+void mlim_duals_cross(const mlim_oracle* oracle, mlim_dual* duals, size_t count)
+{
+  mlim_segment segments[MLIM_SEGMENTS];
+  mlim_crossing crossings[MLIM_SEGMENTS][MAX_CROSSINGS];
+  size_t counts[MLIM_SEGMENTS];
+  for (size_t begin = 0; begin < count; begin += MLIM_SEGMENTS)
+  {
+    const size_t some = count - begin < MLIM_SEGMENTS ? count - begin : MLIM_SEGMENTS;
+    for (size_t k = 0; k < some; ++k)
+    {
+      const mlim_dual* dual = &duals[begin + k];
+      segments[k] = (mlim_segment){ .ends = { dual->ends[0], dual->ends[1] },
+        .labels = { dual->labels[0], dual->labels[1] },
+        .clearances = { dual->clearances[0], dual->clearances[1] } };
+    }
+    mlim_oracle_cross_all(oracle, segments, some, MAX_CROSSINGS, crossings[0], counts);
+    for (size_t k = 0; k < some; ++k)
+    {
+      take(crossings[k], counts[k], &duals[begin + k]);
+    }
   }
 }

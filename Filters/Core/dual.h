@@ -13,7 +13,7 @@ typedef struct mlim_dual
   int32_t cells[2];
   int32_t labels[2];        /* of the cells */
   unsigned char indices[2]; /* of the facet in them */
-  /* What mlim_dual_cross finds. */
+  /* What mlim_duals_cross finds. */
   unsigned char crosses;
   unsigned char is_multiple; /* more often than the labels tell */
   mlim_sheet sheet;          /* crossed */
@@ -26,7 +26,7 @@ int mlim_dual_is_clear(const mlim_complex* complex, int32_t cell, int32_t other)
 /* Of facet `index` of a cell. Both cells have labels. */
 void mlim_dual_copy(const mlim_complex* complex, int32_t cell, int index, mlim_dual* out);
 
-/* Looks along it. */
-void mlim_dual_cross(const mlim_oracle* oracle, mlim_dual* dual);
+/* Looks along some. */
+void mlim_duals_cross(const mlim_oracle* oracle, mlim_dual* duals, size_t count);
 
 #endif

@@ -245,11 +245,7 @@ void mlim_records_cross(mlim_records* records, const mlim_oracle* oracle, size_t
 {
   for (size_t piece = part; piece < records->piece_count; piece += parts)
   {
-    mlim_dual* duals = duals_of(records, piece);
-    for (size_t k = 0; k < records->dual_counts[piece]; ++k)
-    {
-      mlim_dual_cross(oracle, &duals[k]);
-    }
+    mlim_duals_cross(oracle, duals_of(records, piece), records->dual_counts[piece]);
   }
 }
 

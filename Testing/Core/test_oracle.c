@@ -159,6 +159,58 @@ static void test_clearance(const mlim_field* field, uint64_t seed)
   }
 }
 
+/* Taken together, with what is known at their ends, segments have the crossings that each has alone without. */
+static void test_together(const mlim_field* field, uint64_t seed)
+{
+  enum
+  {
+    CAPACITY = 64,
+    LOOKS = 2 * MLIM_SEGMENTS
+  };
+  static mlim_crossing together[MLIM_SEGMENTS * CAPACITY];
+  mlim_crossing alone[CAPACITY];
+  double points[LOOKS][3];
+  mlim_field_look looks[LOOKS];
+  mlim_segment segments[MLIM_SEGMENTS];
+  size_t counts[MLIM_SEGMENTS];
+  const mlim_oracle oracle = { .field = field, .tolerance = 1e-7, .mode = MLIM_ORACLE_EXACT };
+  const size_t some = 1 + (size_t)(random_unit(&seed) * MLIM_SEGMENTS) % MLIM_SEGMENTS;
+  for (int n = 0; n < LOOKS; ++n)
+  {
+    random_point(&seed, points[n]);
+    for (int k = 0; k < 3 && n % 4 == 3; ++k)
+    {
+      points[n][k] = points[n - 1][k] + 0.1 * (points[n][k] - points[n - 1][k]); /* a short one */
+    }
+    looks[n].point = points[n];
+  }
+  mlim_field_look_at(field, looks, LOOKS);
+  for (size_t s = 0; s < some; ++s)
+  {
+    const mlim_field_look* ends = &looks[2 * s];
+    segments[s] = (mlim_segment){ .ends = { ends[0].point, ends[1].point },
+      .labels = { ends[0].label, ends[1].label },
+      .clearances = { ends[0].clearance, ends[1].clearance } };
+  }
+  mlim_oracle_cross_all(&oracle, segments, some, CAPACITY, together, counts);
+  for (size_t s = 0; s < some; ++s)
+  {
+    const size_t count =
+      mlim_oracle_crossings(&oracle, points[2 * s], points[2 * s + 1], CAPACITY, alone);
+    CHECK(counts[s] == count);
+    for (size_t c = 0; c < count && c < counts[s]; ++c)
+    {
+      const mlim_crossing* crossing = &together[s * CAPACITY + c];
+      CHECK(crossing->from == alone[c].from && crossing->to == alone[c].to &&
+            crossing->face == alone[c].face);
+      for (int k = 0; k < 3; ++k)
+      {
+        CHECK(fabs(crossing->point[k] - alone[c].point[k]) < 1e-6);
+      }
+    }
+  }
+}
+
 static int32_t slab(const void* user, const double point[3])
 {
   (void)user;
@@ -198,6 +250,7 @@ int main(void)
         random_point(&seed, a);
         random_point(&seed, b);
         test_segment(field, a, b);
+        test_together(field, seed);
       }
       mlim_field_free(field);
     }
