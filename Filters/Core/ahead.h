@@ -12,42 +12,47 @@ enum
   MLIM_VERTICES_AHEAD = 8 /* and to those whose vertices are, whose cells are there by then */
 };
 
-/* Most vertices lie in two lines of the cache. */
-static inline void mlim_ahead_of_vertex(const mlim_complex* complex, int32_t vertex)
-{
-  const mlim_vertex* v = &complex->vertices[vertex];
-  mlim_prefetch(v);
-  mlim_prefetch(&v->sheet);
-}
-
-/* The vertices of a facet, and the cell beyond it. */
-static inline void mlim_ahead_of_facet(const mlim_complex* complex, int32_t cell, int index)
-{
-  const mlim_cell* c = &complex->cells[cell];
-  for (int k = 1; k < 4; ++k)
-  {
-    if (c->vertices[0] >= 0)
-    {
-      mlim_ahead_of_vertex(complex, c->vertices[(index + k) & 3]);
-    }
-  }
-  if (c->neighbors[index] >= 0)
-  {
-    mlim_prefetch(&complex->cells[c->neighbors[index]]);
-  }
-}
-
-/* For the records from f on, of which `end` is past the last. */
-static inline void mlim_ahead_of_record(const mlim_complex* complex, size_t f, size_t end)
+/* The cells of the records from f on, of which `end` is past the last. */
+static inline void mlim_ahead_of_cell(const mlim_complex* complex, size_t f, size_t end)
 {
   if (f + MLIM_CELLS_AHEAD < end)
   {
     mlim_prefetch(&complex->cells[complex->facets[f + MLIM_CELLS_AHEAD].cell]);
   }
+}
+
+/* The cell beyond a facet. */
+static inline void mlim_ahead_of_neighbor(const mlim_complex* complex, int32_t cell, int index)
+{
+  const int32_t other = complex->cells[cell].neighbors[index];
+  if (other >= 0)
+  {
+    mlim_prefetch(&complex->cells[other]);
+  }
+}
+
+/* The points and weights of a facet's vertices; with their sheets, which are often in the next line of the
+   cache. */
+static inline void mlim_ahead_of_vertices(
+  const mlim_complex* complex, int32_t cell, int index, int has_sheets)
+{
+  const mlim_cell* c = &complex->cells[cell];
+  for (int k = 1; k < 4 && c->vertices[0] >= 0; ++k)
+  {
+    const mlim_vertex* v = &complex->vertices[c->vertices[(index + k) & 3]];
+    mlim_prefetch(v);
+    mlim_prefetch(has_sheets ? (const void*)&v->sheet : (const void*)&v->weight);
+  }
+}
+
+/* For the records from f on: the vertices with their sheets. */
+static inline void mlim_ahead_of_record(const mlim_complex* complex, size_t f, size_t end)
+{
+  mlim_ahead_of_cell(complex, f, end);
   if (f + MLIM_VERTICES_AHEAD < end)
   {
     const mlim_facet* facet = &complex->facets[f + MLIM_VERTICES_AHEAD];
-    mlim_ahead_of_facet(complex, facet->cell, facet->index);
+    mlim_ahead_of_vertices(complex, facet->cell, facet->index, 1);
   }
 }
 

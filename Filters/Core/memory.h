@@ -13,11 +13,13 @@ void* mlim_allocate_zeroed(size_t count, size_t size);
 
 void mlim_release(void* memory);
 
-/* Tells the processor that an address will be read soon. */
+/* Tells the processor that an address will be read soon. The empty statement keeps compilers from leaving
+   out calls of functions that do nothing else. */
 static inline void mlim_prefetch(const void* memory)
 {
 #if defined(__GNUC__)
   __builtin_prefetch(memory);
+  __asm__ volatile("");
 #else
   (void)memory;
 #endif

@@ -85,7 +85,8 @@ static void ask_ahead(const reader* r, size_t t, size_t end)
   if (t + MLIM_VERTICES_AHEAD < end)
   {
     const mlim_boundary_facet* facet = &r->facets[t + MLIM_VERTICES_AHEAD];
-    mlim_ahead_of_facet(r->complex, facet->cell, facet->index);
+    mlim_ahead_of_vertices(r->complex, facet->cell, facet->index, 0);
+    mlim_ahead_of_neighbor(r->complex, facet->cell, facet->index);
   }
 }
 

@@ -50,7 +50,7 @@ static inline void visit_corners(rings* r, void (*visit)(rings*, int32_t, int32_
   for (size_t f = 1; f < complex->facet_count; ++f)
   {
     const mlim_facet* facet = &complex->facets[f];
-    mlim_ahead_of_record(complex, f, complex->facet_count);
+    mlim_ahead_of_cell(complex, f, complex->facet_count);
     if (is_restricted(complex, facet))
     {
       int32_t v[3];

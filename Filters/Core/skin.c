@@ -126,8 +126,9 @@ typedef struct skin_job
   size_t* counts; /* triangles of each block of records, at the block's place in the mesh */
 } skin_job;
 
-static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
+static void ask_ahead(const skin_job* job, size_t f, size_t end)
 {
+  const mlim_complex* complex = job->complex;
   const mlim_facet* facets = complex->facets;
   if (f + MLIM_CELLS_AHEAD < end && is_new(&facets[f + MLIM_CELLS_AHEAD]))
   {
@@ -136,7 +137,11 @@ static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
   if (f + MLIM_VERTICES_AHEAD < end && is_new(&facets[f + MLIM_VERTICES_AHEAD]))
   {
     const mlim_facet* facet = &facets[f + MLIM_VERTICES_AHEAD];
-    mlim_ahead_of_facet(complex, facet->cell, facet->index);
+    mlim_ahead_of_neighbor(complex, facet->cell, facet->index);
+    if (job->blocks->is_near != NULL)
+    {
+      mlim_ahead_of_vertices(complex, facet->cell, facet->index, 0);
+    }
   }
 }
 
@@ -152,7 +157,7 @@ static void facet_body(void* data, size_t begin, size_t end)
     size_t count = 0;
     for (size_t f = b * BLOCK; f < last; ++f)
     {
-      ask_ahead(complex, f, last);
+      ask_ahead(job, f, last);
       mlim_facet* facet = &complex->facets[f];
       int32_t* triangle = job->skin->triangles + 3 * (b * BLOCK + count);
       if (is_new(facet) && is_boundary(complex, facet))

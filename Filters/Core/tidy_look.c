@@ -48,7 +48,8 @@ static void ask_ahead(const tidy_looks* looks, size_t cell)
   {
     if (sides >> k & 1u)
     {
-      mlim_ahead_of_facet(complex, (int32_t)cell, k);
+      mlim_ahead_of_vertices(complex, (int32_t)cell, k, 1);
+      mlim_ahead_of_neighbor(complex, (int32_t)cell, k);
       mlim_prefetch(&complex->facets[complex->cells[cell].facets[k]]);
     }
   }

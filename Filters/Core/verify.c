@@ -311,7 +311,8 @@ static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
   if (f + MLIM_VERTICES_AHEAD < end && is_open(&facets[f + MLIM_VERTICES_AHEAD]))
   {
     const mlim_facet* facet = &facets[f + MLIM_VERTICES_AHEAD];
-    mlim_ahead_of_facet(complex, facet->cell, facet->index);
+    mlim_ahead_of_vertices(complex, facet->cell, facet->index, 0);
+    mlim_ahead_of_neighbor(complex, facet->cell, facet->index);
     mlim_field_ahead(complex->oracle.field, facet->crossing, 1);
   }
 }
