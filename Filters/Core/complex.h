@@ -37,6 +37,7 @@ typedef struct mlim_facet
   unsigned char is_judged : 1;   /* for the loop, which looks at each facet once */
   unsigned char is_settled : 1;  /* for verification, which does so too */
   unsigned char is_measured : 1; /* for it too: it was in a skin */
+  unsigned char is_good : 1;     /* if it is judged: by all criteria, and without a ball vertex */
   int32_t cell;                  /* facet `index` of this cell */
   uint32_t generation;           /* counts the uses of this record */
 } mlim_facet;
@@ -141,6 +142,12 @@ static inline int mlim_complex_index_apart(const mlim_cell* cell, const mlim_cel
     }
   }
   return 3;
+}
+
+/* Nothing that is inserted round a facet changes that. */
+static inline int mlim_complex_is_good(const mlim_facet* facet)
+{
+  return facet->is_judged && facet->is_good;
 }
 
 /* A cell's power centre. */

@@ -140,12 +140,12 @@ mlim_status mlim_refine_report(mlim_refinement* refinement, mlim_context* contex
   return mlim_progress(context, MLIM_STAGE_SURFACE, r->progress);
 }
 
-/* Another goal judges other things. */
+/* Another goal judges other things; what is good is so by all criteria. */
 static void set_goal(mlim_refinement* r, mlim_goal goal)
 {
   for (size_t f = 1; r->goal != goal && f < r->complex.facet_count; ++f)
   {
-    r->complex.facets[f].is_judged = 0;
+    r->complex.facets[f].is_judged &= r->complex.facets[f].is_good;
   }
   r->goal = goal;
 }

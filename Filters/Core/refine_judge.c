@@ -35,6 +35,7 @@ static int bin_of(const mlim_refinement* r, mlim_facet* facet)
   }
   facet->is_judged = 1;
   const mlim_verdict verdict = mlim_criteria_judge(&r->complex, r->options, facet);
+  facet->is_good = verdict.badness == MLIM_BAD_NONE && !verdict.has_ball;
   return is_wanted(r, verdict.badness) &&
              mlim_criteria_may_insert(&r->complex, r->options, facet, verdict.badness)
            ? mlim_queue_bin_of(verdict.badness, verdict.excess)

@@ -68,7 +68,7 @@ static int is_unresolved(const spotting* s, const mlim_facet* facet)
 {
   const mlim_complex* complex = &s->refinement->complex;
   const mlim_options* options = s->refinement->options;
-  if (!facet->is_alive)
+  if (!facet->is_alive || mlim_complex_is_good(facet))
   {
     return 0;
   }

@@ -13,13 +13,18 @@ enum
   LOOK_EVERY = 65536 /* cells between two looks at the host: some milliseconds */
 };
 
+static const mlim_facet* record_of(const mlim_complex* complex, const mlim_cell* cell, int index)
+{
+  return &complex->facets[cell->facets[index]];
+}
+
 /* Verification has looked at nearly all facets already, and from as far unless a bound is tighter. Not to
    be asked once labels have changed: they may have changed sides. */
 static int is_known_to_be_seen(const mlim_refinement* r, const mlim_cell* cell, int index)
 {
   const mlim_complex* complex = &r->complex;
   const int32_t other = complex->cells[cell->neighbors[index]].label;
-  const mlim_facet* facet = &complex->facets[cell->facets[index]];
+  const mlim_facet* facet = record_of(complex, cell, index);
   return facet->is_alive && facet->is_settled &&
          facet->sheet.low == (cell->label < other ? cell->label : other) &&
          facet->sheet.high == (cell->label < other ? other : cell->label) &&
@@ -32,25 +37,40 @@ static unsigned look_at_facet(const mlim_refinement* r, int32_t id, int index, i
   const mlim_complex* complex = &r->complex;
   const mlim_cell* cell = &complex->cells[id];
   const int32_t other = complex->cells[cell->neighbors[index]].label;
+  const int is_seen = is_first_look && is_known_to_be_seen(r, cell, index);
+  /* The record is of the sheet between these labels: a good one has no vertex off it. */
+  if (is_seen && mlim_complex_is_good(record_of(complex, cell, index)))
+  {
+    return 0;
+  }
   const int is_stray = tidy_stray_count(complex, cell, index, cell->label, other) > 0;
-  const int is_bad =
-    tidy_is_misshapen(r, cell, index) ||
-    (!(is_first_look && is_known_to_be_seen(r, cell, index)) &&
-      !mlim_sides_are_seen(complex, id, index, cell->label, other, r->options->facet_distance));
+  const int is_bad = tidy_is_misshapen(r, cell, index) ||
+                     (!is_seen && !mlim_sides_are_seen(complex, id, index, cell->label, other,
+                                    r->options->facet_distance));
   return (unsigned)is_stray | (unsigned)is_bad << TIDY_BAD_SHIFT;
 }
 
-static void ask_ahead(const tidy_looks* looks, size_t cell)
+/* What look_body reads of a cell's facets: the records and the cells beyond, or the vertices where the
+   records, which are there by then, do not say it all. */
+static void ask_ahead(const tidy_looks* looks, size_t cell, int has_records)
 {
   const mlim_complex* complex = &looks->refinement->complex;
   const unsigned sides = looks->boundary->sides[cell] >> MLIM_FIRST_SHIFT;
   for (int k = 0; sides >> k != 0; ++k)
   {
-    if (sides >> k & 1u)
+    if (!(sides >> k & 1u))
+    {
+      continue;
+    }
+    const mlim_facet* facet = record_of(complex, &complex->cells[cell], k);
+    if (!has_records)
+    {
+      mlim_prefetch(facet);
+      mlim_ahead_of_neighbor(complex, (int32_t)cell, k);
+    }
+    else if (!mlim_complex_is_good(facet))
     {
       mlim_ahead_of_vertices(complex, (int32_t)cell, k, 1);
-      mlim_ahead_of_neighbor(complex, (int32_t)cell, k);
-      mlim_prefetch(&complex->facets[complex->cells[cell].facets[k]]);
     }
   }
 }
@@ -63,10 +83,11 @@ static void look_body(void* data, size_t begin, size_t end)
   {
     const unsigned sides = looks->boundary->sides[c] >> MLIM_FIRST_SHIFT;
     unsigned bits = 0;
-    if (c + 2 * MLIM_CELLS_AHEAD < end)
+    if (c + 3 * MLIM_CELLS_AHEAD < end)
     {
-      mlim_prefetch(&looks->refinement->complex.cells[c + 2 * MLIM_CELLS_AHEAD]);
-      ask_ahead(looks, c + MLIM_CELLS_AHEAD);
+      mlim_prefetch(&looks->refinement->complex.cells[c + 3 * MLIM_CELLS_AHEAD]);
+      ask_ahead(looks, c + 2 * MLIM_CELLS_AHEAD, 0);
+      ask_ahead(looks, c + MLIM_CELLS_AHEAD, 1);
     }
     for (int k = 0; sides >> k != 0; ++k)
     {

@@ -49,6 +49,26 @@ static void count_facet(const count_job* job, const mlim_facet* facet, counts* o
   }
 }
 
+/* A good one counts nowhere. */
+static int is_asked(const mlim_facet* facet)
+{
+  return facet->is_alive && !mlim_complex_is_good(facet);
+}
+
+static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
+{
+  const mlim_facet* facets = complex->facets;
+  if (f + MLIM_CELLS_AHEAD < end && is_asked(&facets[f + MLIM_CELLS_AHEAD]))
+  {
+    mlim_prefetch(&complex->cells[facets[f + MLIM_CELLS_AHEAD].cell]);
+  }
+  if (f + MLIM_VERTICES_AHEAD < end && is_asked(&facets[f + MLIM_VERTICES_AHEAD]))
+  {
+    const mlim_facet* facet = &facets[f + MLIM_VERTICES_AHEAD];
+    mlim_ahead_of_vertices(complex, facet->cell, facet->index, 1);
+  }
+}
+
 static void count_body(void* data, size_t begin, size_t end)
 {
   const count_job* job = (const count_job*)data;
@@ -59,8 +79,8 @@ static void count_body(void* data, size_t begin, size_t end)
     job->blocks[b] = (counts){ 0 };
     for (size_t f = b * BLOCK; f < last; ++f)
     {
-      mlim_ahead_of_record(job->complex, f, last);
-      if (job->complex->facets[f].is_alive)
+      ask_ahead(job->complex, f, last);
+      if (is_asked(&job->complex->facets[f]))
       {
         count_facet(job, &job->complex->facets[f], &job->blocks[b]);
       }
