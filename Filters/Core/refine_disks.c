@@ -21,7 +21,27 @@ typedef struct disks
   double done; /* of the certificate's stage, unless queueing */
   unsigned char has_memory[BATCH];
   unsigned char fails[BATCH];
+  int32_t records[BATCH]; /* to queue where it fails; 0: none */
 } disks;
+
+/* The facet of a failed star whose crossing is farthest from the vertex, 0: none can be refined. */
+static int32_t find_farthest(const mlim_refinement* r, int32_t vertex, const mlim_star* star)
+{
+  const mlim_complex* complex = &r->complex;
+  int32_t best = 0;
+  double most = -1;
+  for (size_t k = 0; k < star->facet_count; ++k)
+  {
+    const mlim_facet* facet = &complex->facets[star->facets[k]];
+    const double d = mlim_distance_squared(facet->crossing, complex->vertices[vertex].point);
+    if (d > most && mlim_criteria_may_insert(complex, r->options, facet, MLIM_BAD_DISK))
+    {
+      most = d;
+      best = star->facets[k];
+    }
+  }
+  return best;
+}
 
 static void check_body(void* data, size_t begin, size_t end)
 {
@@ -30,35 +50,15 @@ static void check_body(void* data, size_t begin, size_t end)
   mlim_star star = { 0 };
   for (size_t k = begin; k < end; ++k)
   {
+    const int32_t vertex = d->order[k].id;
     mlim_disk disk;
     d->has_memory[k % BATCH] =
-      mlim_disk_check(&r->complex, &r->links, d->order[k].id, &star, NULL, &disk) == MLIM_OK;
-    d->fails[k % BATCH] = disk == MLIM_DISK_FAILS;
+      mlim_disk_check(&r->complex, &r->links, vertex, &star, NULL, &disk) == MLIM_OK;
+    const int fails = disk == MLIM_DISK_FAILS;
+    d->fails[k % BATCH] = (unsigned char)fails;
+    d->records[k % BATCH] = fails && d->is_queueing ? find_farthest(r, vertex, &star) : 0;
   }
   mlim_star_free(&star);
-}
-
-/* Queues the facet of a failed star whose crossing is farthest from the vertex. */
-static mlim_status queue_star(mlim_refinement* r, int32_t vertex, mlim_context* context)
-{
-  const mlim_complex* complex = &r->complex;
-  mlim_disk disk;
-  const mlim_status status = mlim_disk_check(complex, &r->links, vertex, &r->star, context, &disk);
-  int32_t best = 0;
-  double most = -1;
-  for (size_t k = 0; status == MLIM_OK && k < r->star.facet_count; ++k)
-  {
-    const mlim_facet* facet = &complex->facets[r->star.facets[k]];
-    const double d = mlim_distance_squared(facet->crossing, complex->vertices[vertex].point);
-    if (d > most && mlim_criteria_may_insert(complex, r->options, facet, MLIM_BAD_DISK))
-    {
-      most = d;
-      best = r->star.facets[k];
-    }
-  }
-  return best > 0 && mlim_queue_push(&r->queue, mlim_queue_bin_of(MLIM_BAD_DISK, 1), complex, best)
-           ? mlim_fail_memory(context, "the queue of facets")
-           : status;
 }
 
 static mlim_status note(void* data, size_t begin, size_t end, mlim_context* context)
@@ -68,13 +68,19 @@ static mlim_status note(void* data, size_t begin, size_t end, mlim_context* cont
   mlim_status status = MLIM_OK;
   for (size_t k = begin; k < end && status == MLIM_OK; ++k)
   {
-    const int fails = d->fails[k % BATCH];
+    const int32_t record = d->records[k % BATCH];
     mlim_vertex* vertex = &r->complex.vertices[d->order[k].id];
     vertex->is_dirty = 0;
-    vertex->is_broken = (unsigned char)fails;
-    status = !d->has_memory[k % BATCH] ? mlim_fail_memory(context, "a vertex's star")
-             : fails && d->is_queueing ? queue_star(r, d->order[k].id, context)
-                                       : MLIM_OK;
+    vertex->is_broken = d->fails[k % BATCH] & 1;
+    if (!d->has_memory[k % BATCH])
+    {
+      status = mlim_fail_memory(context, "a vertex's star");
+    }
+    else if (record > 0 &&
+             mlim_queue_push(&r->queue, mlim_queue_bin_of(MLIM_BAD_DISK, 1), &r->complex, record))
+    {
+      status = mlim_fail_memory(context, "the queue of facets");
+    }
   }
   return status != MLIM_OK ? status
          : d->is_queueing  ? mlim_refine_report(r, context)

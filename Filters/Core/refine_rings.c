@@ -15,7 +15,9 @@ enum
 typedef struct rings
 {
   const mlim_complex* complex;
-  uint32_t* ends; /* a vertex: where its edges end, and the next one's begin */
+  size_t facet_count;
+  int32_t* facets; /* the restricted ones: 3 vertices each */
+  uint32_t* ends;  /* a vertex: where its edges end, and the next one's begin */
   int32_t* edges;
 } rings;
 
@@ -29,22 +31,8 @@ static int is_restricted(const mlim_complex* complex, const mlim_facet* facet)
   return cell->label != complex->cells[cell->neighbors[facet->index]].label;
 }
 
-/* Calls for each corner of the restricted facets. */
-static void count_corner(rings* r, int32_t vertex, int32_t a, int32_t b)
-{
-  (void)a;
-  (void)b;
-  ++r->ends[vertex];
-}
-
-static void place_corner(rings* r, int32_t vertex, int32_t a, int32_t b)
-{
-  int32_t* edge = r->edges + 2 * (size_t)--r->ends[vertex];
-  edge[0] = a;
-  edge[1] = b;
-}
-
-static inline void visit_corners(rings* r, void (*visit)(rings*, int32_t, int32_t, int32_t))
+/* Counts the facets at each vertex. */
+static void list_facets(rings* r)
 {
   const mlim_complex* complex = r->complex;
   for (size_t f = 1; f < complex->facet_count; ++f)
@@ -53,25 +41,42 @@ static inline void visit_corners(rings* r, void (*visit)(rings*, int32_t, int32_
     mlim_ahead_of_cell(complex, f, complex->facet_count);
     if (is_restricted(complex, facet))
     {
-      int32_t v[3];
+      int32_t* v = r->facets + 3 * r->facet_count++;
       mlim_complex_facet_vertices(complex, facet->cell, facet->index, v);
-      visit(r, v[0], v[1], v[2]);
-      visit(r, v[1], v[2], v[0]);
-      visit(r, v[2], v[0], v[1]);
+      ++r->ends[v[0]];
+      ++r->ends[v[1]];
+      ++r->ends[v[2]];
     }
   }
 }
 
 /* Afterwards `ends` holds where the edges of each vertex begin. */
+static void place_edges(rings* r)
+{
+  for (size_t f = 0; f < r->facet_count; ++f)
+  {
+    const int32_t* v = r->facets + 3 * f;
+    for (int k = 0; k < 3; ++k)
+    {
+      int32_t* edge = r->edges + 2 * (size_t)--r->ends[v[k]];
+      edge[0] = v[(k + 1) % 3];
+      edge[1] = v[(k + 2) % 3];
+    }
+  }
+}
+
+/* Not 0: out of memory. */
 static int gather(rings* r)
 {
   const size_t vertices = r->complex->vertex_count;
+  const size_t alive = r->complex->facet_count - 1 - r->complex->free_count;
   r->ends = mlim_allocate_zeroed(vertices + 1, sizeof *r->ends);
-  if (r->ends == NULL)
+  r->facets = mlim_allocate(alive, 3 * sizeof *r->facets);
+  if (r->ends == NULL || r->facets == NULL)
   {
     return 1;
   }
-  visit_corners(r, count_corner);
+  list_facets(r);
   for (size_t v = 1; v <= vertices; ++v)
   {
     r->ends[v] += r->ends[v - 1];
@@ -81,7 +86,7 @@ static int gather(rings* r)
   {
     return 1;
   }
-  visit_corners(r, place_corner);
+  place_edges(r);
   return 0;
 }
 
@@ -112,6 +117,7 @@ mlim_status mlim_rings_settle(mlim_refinement* refinement, mlim_context* context
     complex->vertices[v].is_dirty = !holds;
     complex->vertices[v].is_broken &= !holds;
   }
+  mlim_release(r.facets);
   mlim_release(r.ends);
   mlim_release(r.edges);
   if (has_failed)
