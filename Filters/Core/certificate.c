@@ -131,6 +131,11 @@ mlim_status mlim_certificate_count_components(const mlim_complex* complex,
 
 /* ---- grid crossings ---- */
 
+enum
+{
+  BATCHES = 32 /* of slices, between which the host is looked at */
+};
+
 typedef struct slice_result
 {
   size_t count, far_count;
@@ -142,7 +147,9 @@ typedef struct distance_job
   const mlim_oracle* oracle;
   const mlim_nearest* nearest;
   double bound, limit;
+  size_t slice_count;
   slice_result* slices;
+  double most; /* of the batches before */
 } distance_job;
 
 typedef struct distance_visit
@@ -165,7 +172,7 @@ static void visit_crossings(void* user, const mlim_grid_crossing* crossings, siz
   for (size_t k = 0; k < count; ++k)
   {
     const double d = mlim_nearest_distance(job->nearest, crossings[k].crossing.point,
-      mlim_min(job->bound, result->most), job->limit,
+      mlim_min(job->bound, mlim_max(job->most, result->most)), job->limit,
       mlim_nearest_hint_at(&visit->hints, crossings[k].low[0]));
     result->far_count += d > job->bound;
     result->most = mlim_max(result->most, d);
@@ -187,6 +194,18 @@ static void distance_body(void* data, size_t begin, size_t end)
   }
 }
 
+static mlim_status take_slices(void* data, size_t begin, size_t end, mlim_context* context)
+{
+  distance_job* job = (distance_job*)data;
+  for (size_t z = begin; z < end; ++z)
+  {
+    job->most = mlim_max(job->most, job->slices[z].most);
+  }
+  const double share = (double)end / (double)job->slice_count;
+  return mlim_progress(
+    context, MLIM_STAGE_CERTIFICATE, MLIM_CERTIFY_FROM + share * (1 - MLIM_CERTIFY_FROM));
+}
+
 static mlim_status measure_distances(
   const mlim_oracle* oracle, const mlim_options* options, mlim_context* context, mlim_mesh* mesh)
 {
@@ -203,6 +222,7 @@ static mlim_status measure_distances(
     .nearest = &nearest,
     .bound = options->facet_distance,
     .limit = 4 * options->facet_distance + 2 * grid->unit,
+    .slice_count = slices,
     .slices = mlim_allocate_zeroed(slices, sizeof *job.slices) };
   if (job.slices == NULL)
   {
@@ -210,19 +230,17 @@ static mlim_status measure_distances(
   }
   else
   {
-    status = mlim_parallel_stage(context, &(mlim_stage_work){ .count = slices,
-                                            .body = distance_body,
-                                            .job = &job,
-                                            .stage = MLIM_STAGE_CERTIFICATE,
-                                            .from = MLIM_CERTIFY_FROM,
-                                            .to = 1 });
+    status = mlim_parallel_batches(context, &(mlim_batches){ .count = slices,
+                                              .size = slices / BATCHES + 1,
+                                              .body = distance_body,
+                                              .finish = take_slices,
+                                              .job = &job });
     for (size_t z = 0; z < slices; ++z)
     {
       mesh->certificate.grid_crossing_count += job.slices[z].count;
       mesh->certificate.far_crossing_count += job.slices[z].far_count;
-      mesh->certificate.max_crossing_distance =
-        mlim_max(mesh->certificate.max_crossing_distance, job.slices[z].most);
     }
+    mesh->certificate.max_crossing_distance = job.most;
   }
   mlim_release(job.slices);
   mlim_nearest_free(&nearest);
