@@ -13,7 +13,7 @@ enum
 typedef struct boundary_job
 {
   const mlim_complex* complex;
-  int32_t* labels; /* of each cell: close together, neighbours' labels are there without waiting */
+  uint16_t* labels; /* of each cell: close together, neighbours' labels are there without waiting */
   unsigned char* sides;
 } boundary_job;
 
@@ -22,7 +22,7 @@ static void label_body(void* data, size_t begin, size_t end)
   const boundary_job* job = (const boundary_job*)data;
   for (size_t c = begin; c < end; ++c)
   {
-    job->labels[c] = job->complex->cells[c].label;
+    job->labels[c] = (uint16_t)job->complex->cells[c].label; /* a dead cell's is not looked at */
   }
 }
 
