@@ -325,6 +325,13 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   return MLIM_OK;
 }
 
+mlim_status mlim_complex_reserve(mlim_complex* complex, size_t count, mlim_context* context)
+{
+  const mlim_status status = mlim_delaunay_reserve(complex->delaunay, count, context);
+  complex->vertices = mlim_delaunay_vertices(complex->delaunay);
+  return status;
+}
+
 mlim_status mlim_complex_take_all(mlim_complex* complex, mlim_context* context)
 {
   mlim_complex_borrow_cells(complex);

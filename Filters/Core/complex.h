@@ -14,9 +14,10 @@
 #include "delaunay.h"
 #include "oracle.h"
 
+/* Label of a cell that was made since the records were brought up to date; below it: records.h is at it. */
 enum
 {
-  MLIM_NO_LABEL = -1 /* of a cell that was made since the records were brought up to date */
+  MLIM_NO_LABEL = -1
 };
 
 typedef enum mlim_vertex_kind
@@ -29,11 +30,11 @@ typedef enum mlim_vertex_kind
 
 typedef struct mlim_facet
 {
-  double crossing[3]; /* the farthest one from the facet's vertices */
-  mlim_sheet sheet;   /* crossed there */
+  double crossing[3];        /* the farthest one from the facet's vertices */
+  mlim_sheet sheet;          /* crossed there */
+  unsigned char is_multiple; /* crosses more often than its cells' labels tell; other threads ask */
   unsigned char index : 2;
   unsigned char is_alive : 1;
-  unsigned char is_multiple : 1; /* crosses more often than the labels of its cells tell */
   unsigned char is_judged : 1;   /* for the loop, which looks at each facet once */
   unsigned char is_settled : 1;  /* for verification, which does so too */
   unsigned char is_measured : 1; /* for it too: it was in a skin */
@@ -59,7 +60,7 @@ typedef struct mlim_complex
   size_t free_count, free_capacity;
   int32_t* made; /* cells made since the records were brought up to date; dead or twice, some */
   size_t made_count, made_capacity;
-  int32_t* fresh; /* records made since the last judgement */
+  int32_t* fresh; /* records that were not judged when they were made */
   size_t fresh_count, fresh_capacity;
   int32_t* dirty; /* vertices with is_dirty */
   size_t dirty_count, dirty_capacity;
@@ -90,6 +91,9 @@ double mlim_complex_power(const mlim_complex* complex);
    that they inherit, until records.h brings them up to date. MLIM_VERTEX_LIMIT, and nothing changes, when
    that many vertices are there. */
 mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context);
+
+/* mlim_delaunay_reserve for the complex's vertices. */
+mlim_status mlim_complex_reserve(mlim_complex* complex, size_t count, mlim_context* context);
 
 /* Takes over all cells that are there. For after a first series of insertions; until then commits leave
    them to the triangulation. */

@@ -49,6 +49,7 @@ static int open_hole(mlim_complex* complex, const unsigned char* is_marked)
       forget_facet(complex, (int32_t)c, k);
       if (n != MLIM_NO_CELL && !goes(&complex->cells[n], is_marked))
       {
+        complex->cells[n].label = MLIM_NO_LABEL;
         complex->made[complex->made_count++] = n;
       }
     }

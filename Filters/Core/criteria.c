@@ -33,13 +33,12 @@ typedef struct triangle
 /* The dual runs through the facet's power centre, perpendicular to its plane. So the paper's distance
    from circumcentre to crossing is the height of the crossing above the plane; said that way it
    holds for weighted vertices too, whose circumcentre is off the dual. */
-static void measure(const mlim_complex* complex, const mlim_facet* facet, triangle* out)
+static void measure_apart(
+  const mlim_facet* facet, const mlim_vertex* const vertices[3], triangle* out)
 {
-  int32_t id[3];
-  mlim_complex_facet_vertices(complex, facet->cell, facet->index, id);
   for (int k = 0; k < 3; ++k)
   {
-    out->vertex[k] = &complex->vertices[id[k]];
+    out->vertex[k] = vertices[k];
   }
   const double* a = out->vertex[0]->point;
   double u[3];
@@ -74,6 +73,14 @@ static void measure(const mlim_complex* complex, const mlim_facet* facet, triang
   out->shortest_squared = mlim_min(uu, mlim_min(vv, out->edge_squared[2]));
   out->heaviest =
     mlim_max(out->vertex[0]->weight, mlim_max(out->vertex[1]->weight, out->vertex[2]->weight));
+}
+
+static void measure(const mlim_complex* complex, const mlim_facet* facet, triangle* out)
+{
+  int32_t id[3];
+  mlim_complex_facet_vertices(complex, facet->cell, facet->index, id);
+  const mlim_vertex* v = complex->vertices;
+  measure_apart(facet, (const mlim_vertex* const[3]){ &v[id[0]], &v[id[1]], &v[id[2]] }, out);
 }
 
 /* Radius of the surface Delaunay ball: the farthest vertex, since weights make them differ. */
@@ -129,15 +136,13 @@ static int is_off_sheet(
          (labels[0] == facet->sheet.low || labels[0] == facet->sheet.high);
 }
 
-mlim_verdict mlim_criteria_judge(
-  const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet)
+static mlim_verdict judge(const mlim_complex* complex, const mlim_options* options,
+  const mlim_facet* facet, const triangle* t)
 {
-  triangle t;
-  measure(complex, facet, &t);
-  mlim_verdict verdict = { .badness = judge_topology(complex, facet, &t),
+  mlim_verdict verdict = { .badness = judge_topology(complex, facet, t),
     .excess = 1,
-    .has_ball = t.heaviest > 0,
-    .radius_edge_ratio = sqrt(t.radius_squared / t.shortest_squared) };
+    .has_ball = t->heaviest > 0,
+    .radius_edge_ratio = sqrt(t->radius_squared / t->shortest_squared) };
   if (verdict.badness != MLIM_BAD_NONE)
   {
     return verdict;
@@ -148,8 +153,8 @@ mlim_verdict mlim_criteria_judge(
     double measure;
     double bound;
   } rows[] = {
-    { MLIM_BAD_SIZE, ball_radius(&t, facet->crossing), options->facet_size },
-    { MLIM_BAD_DISTANCE, t.height, mlim_criteria_distance(complex, options, &facet->sheet) },
+    { MLIM_BAD_SIZE, ball_radius(t, facet->crossing), options->facet_size },
+    { MLIM_BAD_DISTANCE, t->height, mlim_criteria_distance(complex, options, &facet->sheet) },
     { MLIM_BAD_RATIO, verdict.radius_edge_ratio, options->facet_radius_edge_ratio },
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
@@ -161,8 +166,8 @@ mlim_verdict mlim_criteria_judge(
       break;
     }
   }
-  if ((verdict.badness == MLIM_BAD_NONE || verdict.badness == MLIM_BAD_RATIO) && t.heaviest > 0 &&
-      is_off_sheet(complex, facet, &t, mlim_criteria_distance(complex, options, &facet->sheet)))
+  if ((verdict.badness == MLIM_BAD_NONE || verdict.badness == MLIM_BAD_RATIO) && t->heaviest > 0 &&
+      is_off_sheet(complex, facet, t, mlim_criteria_distance(complex, options, &facet->sheet)))
   {
     verdict.badness = MLIM_BAD_DISTANCE;
     verdict.excess = 1;
@@ -231,31 +236,56 @@ static int is_in_film(const mlim_complex* complex, const mlim_facet* facet, doub
   return is_found;
 }
 
-int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* options,
-  const mlim_facet* facet, mlim_badness badness)
+static int may_insert(const mlim_complex* complex, const mlim_options* options,
+  const mlim_facet* facet, const triangle* t, mlim_badness badness)
 {
-  triangle t;
-  measure(complex, facet, &t);
   /* The crossing is on the facet's dual, so no vertex is nearer in power than these three. */
   const double power =
-    mlim_distance_squared(t.vertex[0]->point, facet->crossing) - t.vertex[0]->weight;
+    mlim_distance_squared(t->vertex[0]->point, facet->crossing) - t->vertex[0]->weight;
   const double least = options->smallest_distance * options->smallest_distance;
   /* A partner across a film may have come nearer to a vertex of its own sheet. Shape alone makes no edge
      shorter than the facet has, so the triangles there can be bettered without an end to fear. */
-  const int is_graded = badness == MLIM_BAD_RATIO && t.heaviest == 0 && power >= t.shortest_squared;
-  const int is_film = badness == MLIM_BAD_SHEET && t.heaviest == 0 && power < least &&
+  const int is_graded =
+    badness == MLIM_BAD_RATIO && t->heaviest == 0 && power >= t->shortest_squared;
+  const int is_film = badness == MLIM_BAD_SHEET && t->heaviest == 0 && power < least &&
                       power >= NEAREST * NEAREST * least &&
                       is_in_film(complex, facet, FILM * options->smallest_distance);
   if (power < least && !is_graded && !is_film)
   {
     return 0;
   }
-  if (power < guard_of(complex, options, facet, &t, badness) * t.heaviest)
+  if (power < guard_of(complex, options, facet, t, badness) * t->heaviest)
   {
     return 0;
   }
   /* Near a ball shape alone never makes an edge shorter than the facet has. */
-  return badness != MLIM_BAD_RATIO || t.heaviest == 0 || power >= t.shortest_squared;
+  return badness != MLIM_BAD_RATIO || t->heaviest == 0 || power >= t->shortest_squared;
+}
+
+mlim_verdict mlim_criteria_judge(
+  const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet)
+{
+  triangle t;
+  measure(complex, facet, &t);
+  return judge(complex, options, facet, &t);
+}
+
+int mlim_criteria_may_insert(const mlim_complex* complex, const mlim_options* options,
+  const mlim_facet* facet, mlim_badness badness)
+{
+  triangle t;
+  measure(complex, facet, &t);
+  return may_insert(complex, options, facet, &t, badness);
+}
+
+mlim_verdict mlim_criteria_judge_apart(const mlim_complex* complex, const mlim_options* options,
+  const mlim_facet* facet, const mlim_vertex* const vertices[3], mlim_badness end, int* is_allowed)
+{
+  triangle t;
+  measure_apart(facet, vertices, &t);
+  const mlim_verdict verdict = judge(complex, options, facet, &t);
+  *is_allowed = verdict.badness < end && may_insert(complex, options, facet, &t, verdict.badness);
+  return verdict;
 }
 
 double mlim_criteria_room(

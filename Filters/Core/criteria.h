@@ -35,6 +35,12 @@ typedef struct mlim_verdict
 mlim_verdict mlim_criteria_judge(
   const mlim_complex* complex, const mlim_options* options, const mlim_facet* facet);
 
+/* The same for a facet that has no record yet, whose vertices are given in the order of
+   mlim_complex_facet_vertices, and beside changes of the complex. *is_allowed: for badnesses before `end`
+   mlim_criteria_may_insert, else 0. */
+mlim_verdict mlim_criteria_judge_apart(const mlim_complex* complex, const mlim_options* options,
+  const mlim_facet* facet, const mlim_vertex* const vertices[3], mlim_badness end, int* is_allowed);
+
 /* The bound on a crossing's height above its facet: facet_distance, or the part of it that a region
    allows which would lose too much volume. */
 double mlim_criteria_distance(

@@ -19,12 +19,18 @@ int delaunay_reserve_cells(mlim_delaunay* d, size_t count)
          mlim_reserve_apart(&d->spheres, &d->sphere_capacity, needed, sizeof *d->spheres);
 }
 
-int delaunay_reserve_vertex(mlim_delaunay* d)
+int delaunay_reserve_vertices(mlim_delaunay* d, size_t count)
 {
-  const size_t needed = d->vertex_count + 1;
+  const size_t needed = d->vertex_count + count;
   return needed > INT32_MAX ||
          mlim_reserve_apart(&d->vertices, &d->vertex_capacity, needed, sizeof *d->vertices) ||
          mlim_reserve_apart(&d->places, &d->place_capacity, needed, sizeof *d->places);
+}
+
+mlim_status mlim_delaunay_reserve(mlim_delaunay* delaunay, size_t count, mlim_context* context)
+{
+  return delaunay_reserve_vertices(delaunay, count) ? mlim_fail_memory(context, "the triangulation")
+                                                    : MLIM_OK;
 }
 
 /* ---- start ---- */
@@ -117,7 +123,7 @@ static mlim_status make_far_vertices(mlim_delaunay* d, const double size[3], mli
   largest = size[2] > largest ? size[2] : largest;
   for (int k = 0; k < MLIM_FAR_VERTICES; ++k)
   {
-    if (delaunay_reserve_vertex(d))
+    if (delaunay_reserve_vertices(d, 1))
     {
       return mlim_fail_memory(context, "the triangulation");
     }

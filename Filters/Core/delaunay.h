@@ -45,10 +45,10 @@ typedef struct mlim_vertex
     };
   };
   /* The client's. All 0 when the vertex is made. */
-  int32_t cell;           /* one of the cells that have it */
-  int32_t ball;           /* index of its ball, -1 */
-  mlim_sheet sheet;       /* of a surface vertex */
-  unsigned char kind : 6; /* mlim_vertex_kind */
+  int32_t cell;       /* one of the cells that have it */
+  int32_t ball;       /* index of its ball, -1 */
+  mlim_sheet sheet;   /* of a surface vertex */
+  unsigned char kind; /* mlim_vertex_kind; apart from what changes, for other threads */
   unsigned char
     is_dirty : 1; /* its star of restricted facets has changed since the disk was looked at */
   unsigned char is_broken : 1; /* its disk failed at the last look */
@@ -93,6 +93,9 @@ typedef struct mlim_delaunay_zone
   size_t count;
   const int32_t* cells;
 } mlim_delaunay_zone;
+
+/* Makes room for so many more vertices: until then no fill moves those that are there. */
+mlim_status mlim_delaunay_reserve(mlim_delaunay* delaunay, size_t count, mlim_context* context);
 
 /* Cells that are dead now: those of the zones whose ids are not in use again. */
 mlim_delaunay_zone mlim_delaunay_dead(const mlim_delaunay* delaunay);

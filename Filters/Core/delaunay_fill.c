@@ -26,7 +26,7 @@ static int reserve_fill(mlim_delaunay* d)
   const size_t count = d->border_count;
   return 3 * count > INT32_MAX ||
          delaunay_reserve_cells(d, count > free_count ? count - free_count : 0) ||
-         delaunay_reserve_vertex(d) ||
+         delaunay_reserve_vertices(d, 1) ||
          mlim_reserve_apart(&d->free_cells, &d->free_capacity, free_count, sizeof *d->free_cells) ||
          mlim_reserve(&d->made, &d->made_capacity, count, sizeof *d->made) ||
          mlim_reserve(&d->slots, &d->slot_capacity, count_slots(d), sizeof *d->slots);

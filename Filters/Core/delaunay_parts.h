@@ -76,8 +76,8 @@ static inline void delaunay_facet_of(const mlim_cell* cell, int index, int32_t o
 mlim_status delaunay_make_spheres(
   mlim_delaunay* d, const int32_t* cells, size_t count, mlim_context* context);
 
-/* Room for so many more cells, and for one more vertex. Not 0: out of memory, or of ids. */
+/* Room for so many more cells and vertices. Not 0: out of memory, or of ids. */
 int delaunay_reserve_cells(mlim_delaunay* d, size_t count);
-int delaunay_reserve_vertex(mlim_delaunay* d);
+int delaunay_reserve_vertices(mlim_delaunay* d, size_t count);
 
 #endif

@@ -8,25 +8,25 @@
 typedef struct mlim_dual
 {
   double ends[2][3]; /* power centres of the two cells */
-  double vertex[3];  /* of the facet, any */
   float clearances[2];
   int32_t cells[2];
-  int32_t labels[2];        /* of the cells */
-  unsigned char indices[2]; /* of the facet in them */
+  int32_t labels[2];     /* of the cells */
+  int32_t vertices[3];   /* of the facet, in the order of mlim_complex_facet_vertices */
+  int32_t stale;         /* record that the labels contradict; 0: none */
+  unsigned char index;   /* of the facet in the first cell */
+  unsigned char is_open; /* there may be a crossing that is not known */
   /* What mlim_duals_cross finds. */
   unsigned char crosses;
   unsigned char is_multiple; /* more often than the labels tell */
-  mlim_sheet sheet;          /* crossed */
-  double crossing[3];        /* there: the one farthest from the facet */
+  signed char bin;           /* the user's own, like the next */
+  unsigned char is_good;
+  mlim_sheet sheet;   /* crossed */
+  int32_t record;     /* of the facet, once it is made; 0: none */
+  double crossing[3]; /* the one farthest from the facet */
 } mlim_dual;
 
-/* Whether a facet's dual stays where the field is uniform, as most between cells of one label do. */
-int mlim_dual_is_clear(const mlim_complex* complex, int32_t cell, int32_t other);
-
-/* Of facet `index` of a cell. Both cells have labels. */
-void mlim_dual_copy(const mlim_complex* complex, int32_t cell, int index, mlim_dual* out);
-
-/* Looks along some. */
-void mlim_duals_cross(const mlim_oracle* oracle, mlim_dual* duals, size_t count);
+/* Looks along those that are open. */
+void mlim_duals_cross(
+  const mlim_oracle* oracle, const mlim_vertex* vertices, mlim_dual* duals, size_t count);
 
 #endif

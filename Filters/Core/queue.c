@@ -16,7 +16,9 @@ enum
   SHEET_BIN = 61,
   CROSSINGS_BIN = 62,
   FAR_BIN = 63,
-  MORTON_BITS = 20
+  MORTON_BITS = 20,
+  DIGIT = 10, /* bits of a place that one pass sorts by */
+  FEW = 2048  /* entries that are sorted sooner without passes */
 };
 
 void mlim_queue_start(mlim_queue* queue, const double size[3])
@@ -153,6 +155,63 @@ static int compare_entries(const void* a, const void* b)
   return x->generation < y->generation ? -1 : x->generation > y->generation;
 }
 
+static size_t digit_of(const mlim_queue_entry* entry, int shift)
+{
+  return entry->place >> shift & ((1u << DIGIT) - 1);
+}
+
+static void sort_by_digit(
+  const mlim_queue_entry* entries, size_t count, int shift, mlim_queue_entry* out)
+{
+  size_t places[(1 << DIGIT) + 1] = { 0 };
+  for (size_t k = 0; k < count; ++k)
+  {
+    ++places[digit_of(&entries[k], shift) + 1];
+  }
+  for (size_t d = 0; d < 1 << DIGIT; ++d)
+  {
+    places[d + 1] += places[d];
+  }
+  for (size_t k = 0; k < count; ++k)
+  {
+    out[places[digit_of(&entries[k], shift)]++] = entries[k];
+  }
+}
+
+/* Entries at the same place, which are few. */
+static void sort_equals(mlim_queue_entry* entries, size_t count)
+{
+  for (size_t first = 0, end; first < count; first = end)
+  {
+    for (end = first + 1; end < count && entries[end].place == entries[first].place;)
+    {
+      ++end;
+    }
+    if (end - first > 1)
+    {
+      qsort(entries + first, end - first, sizeof *entries, compare_entries);
+    }
+  }
+}
+
+static void sort_entries(mlim_queue_entry* entries, size_t count)
+{
+  mlim_queue_entry* other = count > FEW ? mlim_allocate(count, sizeof *other) : NULL;
+  if (other == NULL)
+  {
+    qsort(entries, count, sizeof *entries, compare_entries);
+    return;
+  }
+  /* An even number of passes: what is sorted ends where it was. */
+  for (int shift = 0; shift < 3 * MORTON_BITS; shift += 2 * DIGIT)
+  {
+    sort_by_digit(entries, count, shift, other);
+    sort_by_digit(other, count, shift + DIGIT, entries);
+  }
+  mlim_release(other);
+  sort_equals(entries, count);
+}
+
 int mlim_queue_next(mlim_queue* queue)
 {
   for (int b = MLIM_QUEUE_BINS - 1; b >= 0; --b)
@@ -163,8 +222,7 @@ int mlim_queue_next(mlim_queue* queue)
       queue->bins[b] = queue->batch;
       queue->bins[b].count = 0;
       queue->batch = full;
-      qsort(
-        queue->batch.entries, queue->batch.count, sizeof *queue->batch.entries, compare_entries);
+      sort_entries(queue->batch.entries, queue->batch.count);
       return b;
     }
   }

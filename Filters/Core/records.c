@@ -4,45 +4,144 @@
 #include "status.h"
 #include "vector.h"
 
+#include <math.h>
+#include <string.h>
+
 enum
 {
-  FACETS = 4, /* of a cell */
-  PIECE = 64, /* cells that one thread takes at a time */
-  PIECES = MLIM_RECORD_PIECES,
-  FEW = 4 /* pieces that are not worth waking a thread for */
+  FACETS = 4,   /* of a cell */
+  LOOKS = 64,   /* that wait for memory together */
+  BATCH = 8192, /* cells taken down at a time when all are brought up to date, about 5 ms */
+  SHARED =
+    4096, /* cells that are taken down by several threads: fewer are in the cache of the one that made them */
+  FEW = 256, /* cells that are not worth waking a thread for */
+  TAKEN = -2 /* label of the first cell that was taken down; those of others follow below */
 };
-
-/* One call, from the labels of the new cells to the duals that are left to look along. */
-typedef struct update
-{
-  mlim_records* records;
-  mlim_complex* complex;
-  double done;
-} update;
-
-static size_t least(size_t a, size_t b)
-{
-  return a < b ? a : b;
-}
-
-static mlim_dual* duals_of(const mlim_records* records, size_t piece)
-{
-  return records->duals + (size_t)FACETS * PIECE * (piece % PIECES);
-}
-
-static int32_t* stale_of(const mlim_records* records, size_t piece)
-{
-  return records->stale + (size_t)FACETS * PIECE * (piece % PIECES);
-}
 
 void mlim_records_free(mlim_records* records)
 {
+  mlim_release(records->cells);
+  mlim_release(records->old_cells);
   mlim_release(records->duals);
-  mlim_release(records->stale);
   *records = (mlim_records){ 0 };
 }
 
+/* ---- taking down ---- */
+
+/* Room for all of `made` is there. A cell that was made since has MLIM_NO_LABEL once: what is dead, or there
+   twice, is passed over. */
+static void take_cells(
+  mlim_records* records, mlim_complex* complex, const int32_t* made, size_t count)
+{
+  size_t taken = 0;
+  for (size_t k = 0; k < count; ++k)
+  {
+    mlim_cell* cell = &complex->cells[made[k]];
+    if (cell->vertices[0] >= 0 && cell->label == MLIM_NO_LABEL)
+    {
+      cell->label = TAKEN - (int32_t)taken;
+      records->cells[taken++].id = made[k];
+    }
+  }
+  records->cell_count = taken;
+}
+
+/* Its place among the old cells is that of the facet, so that many can be taken down beside each other. */
+static int32_t take_beyond(
+  mlim_records* records, const mlim_complex* complex, int32_t id, size_t k, int index)
+{
+  if (id == MLIM_NO_CELL)
+  {
+    return INT32_MAX;
+  }
+  const mlim_cell* cell = &complex->cells[id];
+  if (cell->label <= TAKEN)
+  {
+    const int32_t place = TAKEN - cell->label;
+    return place > (int32_t)k ? place : INT32_MAX;
+  }
+  const size_t at = FACETS * k + (size_t)index;
+  mlim_old_cell* out = &records->old_cells[at];
+  mlim_copy(mlim_complex_center(complex, id), out->center);
+  out->id = id;
+  out->label = cell->label;
+  out->clearance = cell->clearance;
+  return -1 - (int32_t)at;
+}
+
+static void take_around(mlim_records* records, const mlim_complex* complex, size_t k)
+{
+  mlim_new_cell* out = &records->cells[k];
+  const mlim_cell* cell = &complex->cells[out->id];
+  mlim_copy(mlim_complex_center(complex, out->id), out->center);
+  memcpy(out->vertices, cell->vertices, sizeof out->vertices);
+  memcpy(out->facets, cell->facets, sizeof out->facets);
+  for (int i = 0; i < FACETS; ++i)
+  {
+    out->beyond[i] = take_beyond(records, complex, cell->neighbors[i], k, i);
+  }
+}
+
+typedef struct taking
+{
+  mlim_records* records;
+  const mlim_complex* complex;
+} taking;
+
+static void take_body(void* data, size_t begin, size_t end)
+{
+  const taking* t = (const taking*)data;
+  for (size_t k = begin; k < end; ++k)
+  {
+    take_around(t->records, t->complex, k);
+  }
+}
+
+static int reserve(mlim_records* records, size_t count)
+{
+  return mlim_reserve(
+           &records->duals, &records->dual_capacity, FACETS * count, sizeof *records->duals) ||
+         mlim_reserve(
+           &records->old_cells, &records->old_capacity, FACETS * count, sizeof *records->old_cells);
+}
+
+static mlim_status take(mlim_records* records, mlim_complex* complex, const int32_t* made,
+  size_t count, size_t parts, mlim_context* context)
+{
+  if (mlim_reserve(&records->cells, &records->cell_capacity, count, sizeof *records->cells))
+  {
+    return mlim_fail_memory(context, "the restricted facets");
+  }
+  take_cells(records, complex, made, count);
+  records->part_count = parts;
+  if (reserve(records, records->cell_count))
+  {
+    return mlim_fail_memory(context, "the restricted facets");
+  }
+  mlim_parallel_for(records->cell_count > SHARED ? context : NULL, records->cell_count, take_body,
+    &(taking){ .records = records, .complex = complex });
+  records->is_pending = records->cell_count > 0;
+  records->oracle = &complex->oracle;
+  records->vertices = complex->vertices;
+  records->facets = complex->facets;
+  return MLIM_OK;
+}
+
+mlim_status mlim_records_take(
+  mlim_records* records, mlim_complex* complex, size_t parts, mlim_context* context)
+{
+  const mlim_status status =
+    take(records, complex, complex->made, complex->made_count, parts, context);
+  complex->made_count = 0;
+  return status;
+}
+
 /* ---- labels ---- */
+
+static size_t begin_of(const mlim_records* records, size_t part)
+{
+  return records->cell_count * part / records->part_count;
+}
 
 /* Rounded down: less is only looked at more closely. */
 static uint16_t narrow(float clearance)
@@ -51,38 +150,27 @@ static uint16_t narrow(float clearance)
   return (uint16_t)(parts < UINT16_MAX ? parts : UINT16_MAX);
 }
 
-static void label_piece(const update* u, size_t piece)
+static void label_some(const mlim_records* records, mlim_new_cell* cells, size_t count)
 {
-  mlim_complex* complex = u->complex;
-  const size_t begin = piece * PIECE;
-  const size_t end = least(begin + PIECE, u->complex->made_count);
-  mlim_field_look looks[PIECE];
-  for (size_t k = begin; k < end; ++k)
+  mlim_field_look looks[LOOKS];
+  for (size_t k = 0; k < count; ++k)
   {
-    looks[k - begin].point = mlim_complex_center(complex, complex->made[k]);
+    looks[k].point = cells[k].center;
   }
-  mlim_field_look_at(complex->oracle.field, looks, end - begin);
-  for (size_t k = begin; k < end; ++k)
+  mlim_field_look_at(records->oracle->field, looks, count);
+  for (size_t k = 0; k < count; ++k)
   {
-    mlim_cell* cell = &complex->cells[complex->made[k]];
-    cell->label = looks[k - begin].label;
-    cell->clearance = narrow(looks[k - begin].clearance);
+    cells[k].label = looks[k].label;
+    cells[k].clearance = narrow(looks[k].clearance);
   }
 }
 
-static void label_body(void* data, size_t begin, size_t end)
+static void label_all(const mlim_records* records, size_t begin, size_t end)
 {
-  for (size_t piece = begin; piece < end; ++piece)
+  for (size_t k = begin; k < end; k += LOOKS)
   {
-    label_piece((const update*)data, piece);
+    label_some(records, &records->cells[k], end - k < LOOKS ? end - k : LOOKS);
   }
-}
-
-static mlim_status look_at_host(void* data, size_t begin, size_t end, mlim_context* context)
-{
-  (void)begin;
-  (void)end;
-  return mlim_progress(context, MLIM_STAGE_SURFACE, ((const update*)data)->done);
 }
 
 /* ---- facets ---- */
@@ -94,75 +182,179 @@ static int matches(const mlim_facet* facet, int32_t a, int32_t b)
          facet->sheet.high == (a < b ? b : a);
 }
 
-/* How many duals and records a piece's cells have given so far. */
-typedef struct finds
+typedef struct looking
 {
-  mlim_dual* duals;
-  int32_t* stale;
-  size_t dual_count, stale_count;
-} finds;
+  mlim_records* records;
+  size_t end; /* of the cells that have their labels */
+  mlim_duals found;
+} looking;
+
+/* What is beyond a facet. */
+typedef struct neighbor
+{
+  const double* center;
+  int32_t id;
+  int32_t label;
+  uint16_t clearance;
+  int is_new;
+} neighbor;
+
+/* In place of waiting for those who label it, if they ever do. */
+static void look_twice(const looking* l, neighbor* out)
+{
+  mlim_field_look look = { .point = out->center };
+  mlim_field_look_at(l->records->oracle->field, &look, 1);
+  out->label = look.label;
+  out->clearance = narrow(look.clearance);
+  out->is_new = 1;
+}
+
+static neighbor look_beyond(const looking* l, int32_t beyond)
+{
+  neighbor out;
+  if (beyond < 0)
+  {
+    const mlim_old_cell* c = &l->records->old_cells[-1 - beyond];
+    out =
+      (neighbor){ .center = c->center, .id = c->id, .label = c->label, .clearance = c->clearance };
+    if (c->label == MLIM_NO_LABEL)
+    {
+      look_twice(l, &out);
+    }
+    return out;
+  }
+  const mlim_new_cell* c = &l->records->cells[beyond];
+  out = (neighbor){ .center = c->center, .id = c->id };
+  if ((size_t)beyond >= l->end)
+  {
+    look_twice(l, &out);
+    return out;
+  }
+  out.label = c->label;
+  out.clearance = c->clearance;
+  out.is_new = 1;
+  return out;
+}
+
+/* Whether the dual between two cells stays where the field is uniform, as most between cells of one label do:
+   round each end lies a cube of its label, and the two cover the dual together. */
+static int is_clear(const mlim_records* records, const mlim_new_cell* own, const neighbor* beyond)
+{
+  const double* inverse = mlim_field_grid_of(records->oracle->field)->inverse_spacing;
+  double longest = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    longest = mlim_max(longest, fabs(own->center[k] - beyond->center[k]) * inverse[k]);
+  }
+  return longest * MLIM_CLEARANCE_PARTS <= own->clearance + beyond->clearance;
+}
+
+static void copy_dual(const mlim_new_cell* own, int index, const neighbor* beyond, mlim_dual* out)
+{
+  const int32_t* v = own->vertices;
+  const int is_odd = index & 1;
+  *out = (mlim_dual){ .cells = { own->id, beyond->id },
+    .labels = { own->label, beyond->label },
+    .vertices = { v[(index + 1) & 3], v[(index + (is_odd ? 3 : 2)) & 3],
+      v[(index + (is_odd ? 2 : 3)) & 3] },
+    .clearances = { (float)own->clearance / MLIM_CLEARANCE_PARTS,
+      (float)beyond->clearance / MLIM_CLEARANCE_PARTS },
+    .stale = own->facets[index],
+    .index = (unsigned char)index };
+  mlim_copy(own->center, out->ends[0]);
+  mlim_copy(beyond->center, out->ends[1]);
+}
 
 /* A facet of a new cell. Its dual may be part of one that was looked at before: there was no crossing, or its
    record says which. */
-static void look_at_facet(const mlim_complex* complex, int32_t id, int index, finds* out)
+static void look_at_facet(looking* l, const mlim_new_cell* own, int index)
 {
-  const mlim_cell* cell = &complex->cells[id];
-  const int32_t n = cell->neighbors[index];
-  if (n == MLIM_NO_CELL)
+  const mlim_records* records = l->records;
+  if (own->beyond[index] == INT32_MAX)
   {
     return;
   }
-  const mlim_cell* other = &complex->cells[n];
-  const int is_new = other->mark == complex->stamp;
-  if (is_new && n < id)
+  const neighbor beyond = look_beyond(l, own->beyond[index]);
+  const int differs = own->label != beyond.label;
+  const mlim_facet* facet = own->facets[index] > 0 ? &records->facets[own->facets[index]] : NULL;
+  if (facet != NULL && matches(facet, own->label, beyond.label))
   {
     return;
   }
-  const int32_t record = cell->facets[index];
-  const int differs = cell->label != other->label;
-  int is_open = differs || (is_new && !mlim_dual_is_clear(complex, id, n));
-  if (record > 0)
+  const int may_cross = facet == NULL ? beyond.is_new : facet->is_multiple;
+  const int is_open = differs || (may_cross && !is_clear(records, own, &beyond));
+  if (!is_open && facet == NULL)
   {
-    const mlim_facet* facet = &complex->facets[record];
-    if (matches(facet, cell->label, other->label))
-    {
-      return;
-    }
-    out->stale[out->stale_count++] = record;
-    is_open = differs || (facet->is_multiple && !mlim_dual_is_clear(complex, id, n));
+    return;
   }
-  if (is_open)
-  {
-    mlim_dual_copy(complex, id, index, &out->duals[out->dual_count++]);
-  }
+  mlim_dual* dual = &l->found.all[l->found.count++];
+  copy_dual(own, index, &beyond, dual);
+  dual->is_open = (unsigned char)is_open;
 }
 
-static void look_at_piece(update* u, size_t piece)
+/* Of the duals that were looked along those stay that cross, or contradict a record. */
+static void keep_found(mlim_duals* found)
 {
-  mlim_records* records = u->records;
-  const size_t begin = piece * PIECE;
-  const size_t end = least(begin + PIECE, u->complex->made_count);
-  finds out = { .duals = duals_of(records, piece), .stale = stale_of(records, piece) };
-  for (size_t k = begin; k < end; ++k)
+  size_t kept = 0;
+  for (size_t k = 0; k < found->count; ++k)
+  {
+    if (found->all[k].crosses || found->all[k].stale > 0)
+    {
+      found->all[kept++] = found->all[k];
+    }
+  }
+  found->count = kept;
+}
+
+mlim_duals mlim_records_duals(const mlim_records* records, size_t part)
+{
+  return (mlim_duals){ .count = records->dual_counts[part],
+    .all = records->duals + FACETS * begin_of(records, part) };
+}
+
+static void look_at_part(const looking* range, size_t part)
+{
+  mlim_records* records = range->records;
+  looking l = *range;
+  l.found.all = records->duals + FACETS * begin_of(records, part);
+  for (size_t k = begin_of(records, part); k < begin_of(records, part + 1); ++k)
   {
     for (int i = 0; i < FACETS; ++i)
     {
-      look_at_facet(u->complex, u->complex->made[k], i, &out);
+      look_at_facet(&l, &records->cells[k], i);
     }
   }
-  records->dual_counts[piece % PIECES] = (uint16_t)out.dual_count;
-  records->stale_counts[piece % PIECES] = (uint16_t)out.stale_count;
+  mlim_duals_cross(records->oracle, records->vertices, l.found.all, l.found.count);
+  keep_found(&l.found);
+  records->dual_counts[part] = (uint32_t)l.found.count;
 }
 
-static void look_body(void* data, size_t begin, size_t end)
+void mlim_records_look(mlim_records* records, size_t begin, size_t end)
 {
-  for (size_t piece = begin; piece < end; ++piece)
+  const looking range = { .records = records, .end = begin_of(records, end) };
+  label_all(records, begin_of(records, begin), range.end);
+  for (size_t part = begin; part < end; ++part)
   {
-    look_at_piece((update*)data, piece);
+    look_at_part(&range, part);
   }
 }
 
-/* ---- records ---- */
+/* ---- settling ---- */
+
+/* Cells that died meanwhile have no use for a label. */
+static void give_labels(const mlim_records* records, mlim_complex* complex)
+{
+  for (size_t k = 0; k < records->cell_count; ++k)
+  {
+    const mlim_new_cell* from = &records->cells[k];
+    mlim_cell* cell = &complex->cells[from->id];
+    if (cell->label == TAKEN - (int32_t)k)
+    {
+      cell->label = from->label;
+      cell->clearance = from->clearance;
+    }
+  }
+}
 
 static int32_t new_record(mlim_complex* complex)
 {
@@ -182,192 +374,171 @@ static int32_t new_record(mlim_complex* complex)
   return (int32_t)complex->facet_count++;
 }
 
-/* A record goes; what its facet has instead is not known yet. */
-static void drop_record(mlim_complex* complex, int32_t record)
+/* A facet as its side tells it that is there. */
+typedef struct place
 {
-  const mlim_facet* facet = &complex->facets[record];
-  mlim_cell* cell = &complex->cells[facet->cell];
-  mlim_cell* other = &complex->cells[cell->neighbors[facet->index]];
-  mlim_complex_touch_facet(complex, facet->cell, facet->index);
-  cell->facets[facet->index] = 0;
-  other->facets[mlim_complex_index_apart(other, cell)] = 0;
-  mlim_complex_kill_record(complex, record);
-}
+  mlim_cell *cell, *other;
+  int32_t id;
+  int index, index_beyond;
+} place;
 
-/* The side of a dual whose cell is still the one that it was, -1: neither. What was made since has no label. */
-static int living_side(const mlim_complex* complex, const mlim_dual* dual)
+/* From a cell of a dual that is still the one that it was: what was made since has no label. Its other one may be
+   gone, the dual shorter. 0: both are gone. */
+static int find_place(const mlim_complex* complex, const mlim_dual* dual, place* out)
 {
   for (int side = 0; side < 2; ++side)
   {
-    const mlim_cell* cell = &complex->cells[dual->cells[side]];
-    if (cell->vertices[0] >= 0 && cell->label != MLIM_NO_LABEL)
+    const int32_t id = dual->cells[side];
+    mlim_cell* cell = &complex->cells[id];
+    if (cell->vertices[0] < 0 || cell->label < 0)
     {
-      return side;
+      continue;
     }
+    int index = dual->index;
+    if (side == 1)
+    {
+      const int32_t* v = dual->vertices;
+      for (index = 0; index < 3; ++index)
+      {
+        const int32_t at = cell->vertices[index];
+        if (at != v[0] && at != v[1] && at != v[2])
+        {
+          break;
+        }
+      }
+    }
+    mlim_cell* other = &complex->cells[cell->neighbors[index]];
+    *out = (place){ .cell = cell,
+      .other = other,
+      .id = id,
+      .index = index,
+      .index_beyond = mlim_complex_index_apart(other, cell) };
+    return 1;
   }
-  return -1;
+  return 0;
 }
 
-/* The dual may have become shorter at one end since it was copied: the record passes on. Returns 1 when out of
-   memory. */
-static int add_record(mlim_complex* complex, const mlim_dual* dual)
+static void set_record(const place* at, int32_t record)
 {
-  const int side = living_side(complex, dual);
-  if (side < 0)
-  {
-    return 0;
-  }
+  at->cell->facets[at->index] = record;
+  at->other->facets[at->index_beyond] = record;
+}
+
+/* Returns 1 when out of memory. */
+static int add_record(mlim_complex* complex, mlim_dual* dual, const place* at)
+{
   const int32_t record = new_record(complex);
-  if (record == 0 || mlim_reserve_apart(&complex->fresh, &complex->fresh_capacity,
-                       complex->fresh_count + 1, sizeof *complex->fresh))
+  if (record == 0)
   {
     return 1;
   }
   mlim_facet* facet = &complex->facets[record];
   const uint32_t generation = facet->generation;
   *facet = (mlim_facet){ .sheet = dual->sheet,
-    .cell = dual->cells[side],
+    .cell = at->id,
     .generation = generation,
-    .index = dual->indices[side] & 3,
+    .index = (unsigned)at->index & 3,
     .is_alive = 1,
-    .is_multiple = dual->is_multiple & 1 };
+    .is_multiple = dual->is_multiple };
   mlim_copy(dual->crossing, facet->crossing);
-  complex->fresh[complex->fresh_count++] = record;
-  mlim_cell* cell = &complex->cells[facet->cell];
-  mlim_cell* other = &complex->cells[cell->neighbors[facet->index]];
-  cell->facets[facet->index] = record;
-  other->facets[mlim_complex_index_apart(other, cell)] = record;
-  mlim_complex_touch_facet(complex, facet->cell, facet->index);
+  set_record(at, record);
+  dual->record = record;
   return 0;
 }
 
-void mlim_records_cross(mlim_records* records, const mlim_oracle* oracle, size_t part, size_t parts)
+/* Returns 1 when out of memory. */
+static int settle_dual(mlim_complex* complex, mlim_dual* dual)
 {
-  for (size_t piece = part; piece < records->piece_count; piece += parts)
+  place at;
+  if (!find_place(complex, dual, &at))
   {
-    mlim_duals_cross(oracle, duals_of(records, piece), records->dual_counts[piece]);
+    return 0;
   }
+  mlim_complex_touch_facet(complex, at.id, at.index);
+  if (dual->stale > 0)
+  {
+    set_record(&at, 0);
+    mlim_complex_kill_record(complex, dual->stale);
+  }
+  return dual->crosses && add_record(complex, dual, &at);
 }
 
-mlim_status mlim_records_end(
-  mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
+mlim_status mlim_records_settle(mlim_records* records, mlim_complex* complex, mlim_context* context)
 {
   int has_failed = 0;
-  for (size_t piece = 0; piece < records->piece_count && !has_failed; ++piece)
+  if (!records->is_pending)
   {
-    const mlim_dual* duals = duals_of(records, piece);
-    for (size_t k = 0; k < records->dual_counts[piece] && !has_failed; ++k)
+    return MLIM_OK;
+  }
+  give_labels(records, complex);
+  for (size_t p = 0; p < records->part_count && !has_failed; ++p)
+  {
+    const mlim_duals duals = mlim_records_duals(records, p);
+    for (size_t k = 0; k < duals.count && !has_failed; ++k)
     {
-      has_failed = duals[k].crosses && add_record(complex, &duals[k]);
+      has_failed = settle_dual(complex, &duals.all[k]);
     }
   }
-  records->piece_count = 0;
-  return has_failed ? mlim_fail_memory(context, "the restricted facets")
-                    : mlim_progress(context, MLIM_STAGE_SURFACE, done);
+  records->is_pending = 0;
+  return has_failed ? mlim_fail_memory(context, "the restricted facets") : MLIM_OK;
 }
 
 /* ---- the whole ---- */
 
-/* Leaves the cells that are alive, each once, and marks them with the stamp. */
-static void keep_living(mlim_complex* complex)
+static void look_body(void* data, size_t begin, size_t end)
 {
-  const uint32_t stamp = ++complex->stamp;
-  size_t kept = 0;
-  for (size_t k = 0; k < complex->made_count; ++k)
+  mlim_records_look((mlim_records*)data, begin, end);
+}
+
+/* Returns 1 when out of memory. */
+static int list_fresh(const mlim_records* records, mlim_complex* complex)
+{
+  for (size_t p = 0; p < records->part_count; ++p)
   {
-    const int32_t id = complex->made[k];
-    mlim_cell* cell = &complex->cells[id];
-    if (cell->vertices[0] >= 0 && cell->mark != stamp)
+    const mlim_duals duals = mlim_records_duals(records, p);
+    if (mlim_reserve_apart(&complex->fresh, &complex->fresh_capacity,
+          complex->fresh_count + duals.count, sizeof *complex->fresh))
     {
-      cell->mark = stamp;
-      complex->made[kept++] = id;
+      return 1;
+    }
+    for (size_t k = 0; k < duals.count; ++k)
+    {
+      complex->fresh[complex->fresh_count] = duals.all[k].record;
+      complex->fresh_count += duals.all[k].record > 0;
     }
   }
-  complex->made_count = kept;
+  return 0;
 }
 
-static int reserve(mlim_records* records, size_t cells)
+static mlim_status update_some(mlim_records* records, mlim_complex* complex, const int32_t* made,
+  size_t count, mlim_context* context)
 {
-  const size_t room = FACETS * PIECE * least(PIECES, (cells + PIECE - 1) / PIECE);
-  return mlim_reserve(&records->duals, &records->dual_capacity, room, sizeof *records->duals) ||
-         mlim_reserve(&records->stale, &records->stale_capacity, room, sizeof *records->stale);
-}
-
-typedef struct crossing_job
-{
-  mlim_records* records;
-  const mlim_oracle* oracle;
-} crossing_job;
-
-static void cross_body(void* data, size_t begin, size_t end)
-{
-  const crossing_job* job = (const crossing_job*)data;
-  for (size_t piece = begin; piece < end; ++piece)
+  const int is_shared = count > FEW;
+  mlim_status status =
+    take(records, complex, made, count, is_shared ? MLIM_RECORD_PARTS : 1, context);
+  if (status != MLIM_OK)
   {
-    mlim_records_cross(job->records, job->oracle, piece, PIECES);
+    return status;
   }
-}
-
-mlim_status mlim_records_finish(
-  mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
-{
-  if (records->piece_count == 0)
-  {
-    return MLIM_OK;
-  }
-  mlim_parallel_for(records->piece_count > FEW ? context : NULL, records->piece_count, cross_body,
-    &(crossing_job){ .records = records, .oracle = &complex->oracle });
-  return mlim_records_end(records, complex, done, context);
-}
-
-/* The pieces that were looked at last are left to be looked along; those before them are done. */
-static mlim_status take_looks(void* data, size_t begin, size_t end, mlim_context* context)
-{
-  const update* u = (const update*)data;
-  for (size_t piece = begin; piece < end; ++piece)
-  {
-    const int32_t* stale = stale_of(u->records, piece);
-    for (size_t k = 0; k < u->records->stale_counts[piece % PIECES]; ++k)
-    {
-      drop_record(u->complex, stale[k]);
-    }
-  }
-  u->records->piece_count = end - begin;
-  const size_t all = (u->complex->made_count + PIECE - 1) / PIECE;
-  return end == all ? MLIM_OK : mlim_records_finish(u->records, u->complex, u->done, context);
-}
-
-static mlim_status run(update* u, mlim_body body,
-  mlim_status (*finish)(void*, size_t, size_t, mlim_context*), mlim_context* context)
-{
-  return mlim_parallel_batches(
-    context, &(mlim_batches){ .count = (u->complex->made_count + PIECE - 1) / PIECE,
-               .size = PIECES,
-               .few = FEW,
-               .body = body,
-               .finish = finish,
-               .job = u });
-}
-
-mlim_status mlim_records_begin(
-  mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
-{
-  keep_living(complex);
-  update u = { .records = records, .complex = complex, .done = done };
-  mlim_status status = reserve(records, complex->made_count)
-                         ? mlim_fail_memory(context, "the restricted facets")
-                         : run(&u, label_body, look_at_host, context);
-  status = status == MLIM_OK ? run(&u, look_body, take_looks, context) : status;
-  complex->made_count = 0;
-  return status;
+  mlim_parallel_for(is_shared ? context : NULL, records->part_count, look_body, records);
+  status = mlim_records_settle(records, complex, context);
+  return status == MLIM_OK && list_fresh(records, complex)
+           ? mlim_fail_memory(context, "the restricted facets")
+           : status;
 }
 
 mlim_status mlim_records_update(
   mlim_records* records, mlim_complex* complex, double done, mlim_context* context)
 {
-  mlim_status status = mlim_records_finish(records, complex, done, context);
-  status = status == MLIM_OK ? mlim_records_begin(records, complex, done, context) : status;
-  return status == MLIM_OK ? mlim_records_finish(records, complex, done, context) : status;
+  mlim_status status = mlim_progress(context, MLIM_STAGE_SURFACE, done);
+  for (size_t k = 0; k < complex->made_count && status == MLIM_OK; k += BATCH)
+  {
+    const size_t left = complex->made_count - k;
+    status = update_some(records, complex, complex->made + k, left < BATCH ? left : BATCH, context);
+    status = status == MLIM_OK ? mlim_progress(context, MLIM_STAGE_SURFACE, done) : status;
+  }
+  complex->made_count = 0;
+  return status;
 }
 
 int mlim_records_hold(const mlim_complex* complex, const mlim_facet* facet)
@@ -379,8 +550,8 @@ int mlim_records_hold(const mlim_complex* complex, const mlim_facet* facet)
   for (int k = 0; k < 2; ++k)
   {
     const int32_t known = complex->cells[sides[k]].label;
-    is_new |= known == MLIM_NO_LABEL;
-    labels[k] = known != MLIM_NO_LABEL
+    is_new |= known < 0;
+    labels[k] = known >= 0
                   ? known
                   : mlim_field_label(complex->oracle.field, mlim_complex_center(complex, sides[k]));
   }

@@ -2,8 +2,9 @@
    through, all that is there is brought up to date: what came and went in between is never looked at, and
    what is left can be looked at in parallel.
 
-   Looking along duals, the longest part, needs nothing of the complex but copies. It can be done beside the
-   next batch of insertions, and its records come a batch later. Same records for any number of threads. */
+   Looking needs nothing of the complex but a copy of the new cells and what is round them, the vertices'
+   points and the records' sheets, which insertions leave alone. It can be done beside the next batch of insertions;
+   labels and records come a batch later. Same records for any number of threads. */
 #ifndef mlim_records_h
 #define mlim_records_h
 
@@ -11,44 +12,71 @@
 
 enum
 {
-  MLIM_RECORD_PIECES = 128 /* between two looks at the host, about 5 ms */
+  MLIM_RECORD_PARTS = 64 /* at most */
 };
 
-/* Duals on their way. All 0 to begin with. */
+/* A cell that was there before, as it was when it was taken down. */
+typedef struct mlim_old_cell
+{
+  double center[3];
+  int32_t id;
+  int32_t label; /* MLIM_NO_LABEL: it is new as well, but its turn comes later */
+  uint16_t clearance;
+} mlim_old_cell;
+
+typedef struct mlim_new_cell
+{
+  double center[3];
+  int32_t id;
+  int32_t vertices[4], facets[4];
+  int32_t
+    beyond[4]; /* new cell k: k; old cell k: -1 - k; INT32_MAX: nothing, or looked at from there */
+  int32_t label;
+  uint16_t clearance;
+} mlim_new_cell;
+
+/* What is on its way. All 0 to begin with. */
 typedef struct mlim_records
 {
-  mlim_dual* duals; /* room for all facets of a piece's cells, piece after piece */
+  mlim_new_cell* cells;
+  size_t cell_count, cell_capacity;
+  mlim_old_cell* old_cells;
+  size_t old_capacity;
+  int is_pending;   /* taken down, but not settled */
+  mlim_dual* duals; /* room for all facets of the cells, part after part */
   size_t dual_capacity;
-  int32_t* stale; /* records that the new labels contradict, in the same way */
-  size_t stale_capacity;
-  size_t piece_count;
-  uint16_t dual_counts[MLIM_RECORD_PIECES];
-  uint16_t stale_counts[MLIM_RECORD_PIECES];
+  size_t part_count;
+  uint32_t dual_counts[MLIM_RECORD_PARTS];
+  const mlim_oracle* oracle;   /* borrowed of the complex */
+  const mlim_vertex* vertices; /* the same */
+  const mlim_facet* facets;    /* the same */
 } mlim_records;
 
 void mlim_records_free(mlim_records* records);
 
-/* Labels the cells made since the last time and finds what is new about their facets: the records that do
-   not hold any more go, and the duals to look along are copied. Nothing may be on its way. `done` is reported as
-   the share of the surface's stage. */
-mlim_status mlim_records_begin(
-  mlim_records* records, mlim_complex* complex, double done, mlim_context* context);
+/* Takes down the cells made since the last time, to be looked at in so many parts. Nothing may be on its way. */
+mlim_status mlim_records_take(
+  mlim_records* records, mlim_complex* complex, size_t parts, mlim_context* context);
 
-/* Looks along one of `parts` equal parts of what is on its way. Parts may run at the same time, and beside
-   insertions into the complex. */
-void mlim_records_cross(
-  mlim_records* records, const mlim_oracle* oracle, size_t part, size_t parts);
+/* Labels parts `begin` to `end` of what is on its way and looks along their duals. Parts may be looked at at the
+   same time, and beside insertions into the complex as long as no vertex moves. */
+void mlim_records_look(mlim_records* records, size_t begin, size_t end);
 
-/* Records what was found, as far as its facets are still there; fresh lists the new records, too. All parts
-   have been looked along. */
-mlim_status mlim_records_end(
-  mlim_records* records, mlim_complex* complex, double done, mlim_context* context);
+/* The duals of a part that has been looked at: those that cross, or contradict a record. */
+typedef struct mlim_duals
+{
+  size_t count;
+  mlim_dual* all;
+} mlim_duals;
+mlim_duals mlim_records_duals(const mlim_records* records, size_t part);
 
-/* What is on its way, to the end. */
-mlim_status mlim_records_finish(
-  mlim_records* records, mlim_complex* complex, double done, mlim_context* context);
+/* Gives the complex the labels and records of what is on its way, as far as cells and facets are still there.
+   All parts have been looked at. The duals stay until the next ones are taken, and tell their records. */
+mlim_status mlim_records_settle(
+  mlim_records* records, mlim_complex* complex, mlim_context* context);
 
-/* All of it: what is on its way and what is new. */
+/* All of it: what is on its way and what is new. fresh lists the records. `done` is reported as the share of the
+   surface's stage. */
 mlim_status mlim_records_update(
   mlim_records* records, mlim_complex* complex, double done, mlim_context* context);
 

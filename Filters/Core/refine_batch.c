@@ -7,9 +7,10 @@
 
 enum
 {
-  UPDATE_EVERY = 2048, /* cells made between two updates: they are still in the cache then */
-  PARTS = 7, /* of the duals to look along; with the insertions as many as hosts hand out singly */
-  FEW = 4    /* pieces of duals that are not worth waking a thread for */
+  UPDATE_EVERY = 1536, /* cells made between two updates: they are still in the cache then */
+  VERTICES = 2048, /* room for what an update's cells have at most: one in four, and its partners */
+  PARTS = 7,       /* of what is looked at; with the insertions as many as hosts hand out singly */
+  FEW = 256        /* cells that are not worth waking a thread for */
 };
 
 /* The partners of a vertex that was inserted just now. */
@@ -76,8 +77,9 @@ static int is_due(const mlim_refinement* r, const mlim_queue_entry* entry, mlim_
 static void insert_some(turn* t)
 {
   mlim_refinement* r = t->refinement;
+  const size_t limit = r->complex.vertex_count + VERTICES / 4;
   for (; t->next < r->queue.batch.count && t->status == MLIM_OK &&
-         r->complex.made_count < UPDATE_EVERY;
+         r->complex.made_count < UPDATE_EVERY && r->complex.vertex_count < limit;
        ++t->next)
   {
     const mlim_queue_entry entry = r->queue.batch.entries[t->next];
@@ -88,36 +90,45 @@ static void insert_some(turn* t)
   }
 }
 
-/* Item 0 inserts, the others look along duals: they touch nothing in common. */
+/* Item 0 inserts, the others look at what those before have left: what one changes, no other reads. A thread that has
+   both looks first, as long as the cells are in its cache. */
 static void turn_body(void* data, size_t begin, size_t end)
 {
   turn* t = (turn*)data;
-  for (size_t item = begin; item < end; ++item)
+  const size_t first = begin == 0 ? 0 : begin - 1;
+  if (end > first + 1)
   {
-    if (item == 0)
-    {
-      insert_some(t);
-    }
-    else
-    {
-      mlim_records_cross(&t->refinement->records, &t->refinement->complex.oracle, item - 1, PARTS);
-    }
+    mlim_records_look(&t->refinement->records, first, end - 1);
   }
+  for (size_t part = first; part + 1 < end; ++part)
+  {
+    mlim_judge_duals(t->refinement, part);
+  }
+  if (begin == 0)
+  {
+    insert_some(t);
+  }
+}
+
+/* Records and queues what was found. */
+static mlim_status settle(mlim_refinement* r, mlim_context* context)
+{
+  const mlim_status status = mlim_records_settle(&r->records, &r->complex, context);
+  return status == MLIM_OK ? mlim_judge_settled(r, context) : status;
 }
 
 static mlim_status take_turn(turn* t)
 {
   mlim_refinement* r = t->refinement;
-  const int is_shared = r->records.piece_count > FEW;
-  mlim_parallel_for(is_shared ? t->context : NULL, 1 + PARTS, turn_body, t);
-  const mlim_status status = mlim_records_end(&r->records, &r->complex, r->progress, t->context);
-  return t->status == MLIM_OK ? status : t->status;
-}
-
-static mlim_status judge(mlim_refinement* r, mlim_context* context)
-{
-  const mlim_status status = mlim_judge_fresh(r, context);
-  return status == MLIM_OK ? mlim_refine_report(r, context) : status;
+  mlim_complex* complex = &r->complex;
+  const int is_shared = r->records.is_pending && r->records.cell_count > FEW;
+  const size_t parts = r->records.is_pending ? PARTS : 0;
+  mlim_parallel_for(is_shared ? t->context : NULL, 1 + parts, turn_body, t);
+  mlim_status status = parts > 0 ? settle(r, t->context) : mlim_refine_report(r, t->context);
+  status = t->status == MLIM_OK ? status : t->status;
+  /* Insertions leave the vertices where they are when they are looked at. */
+  status = status == MLIM_OK ? mlim_complex_reserve(complex, VERTICES, t->context) : status;
+  return status == MLIM_OK ? mlim_records_take(&r->records, complex, PARTS, t->context) : status;
 }
 
 mlim_status mlim_batch_work(
@@ -125,16 +136,10 @@ mlim_status mlim_batch_work(
 {
   mlim_refinement* r = refinement;
   turn t = { .refinement = r, .badness = badness, .context = context };
-  mlim_status status = MLIM_OK;
-  while (t.next < r->queue.batch.count && status == MLIM_OK)
+  mlim_status status = mlim_judge_fresh(r, context);
+  while ((t.next < r->queue.batch.count || r->records.is_pending) && status == MLIM_OK)
   {
     status = take_turn(&t);
-    /* Facets are judged once all cells have labels. */
-    status = status == MLIM_OK ? mlim_records_begin(&r->records, &r->complex, r->progress, context)
-                               : status;
-    status = status == MLIM_OK ? judge(r, context) : status;
   }
-  status = status == MLIM_OK ? mlim_records_finish(&r->records, &r->complex, r->progress, context)
-                             : status;
-  return status == MLIM_OK ? judge(r, context) : status;
+  return status;
 }

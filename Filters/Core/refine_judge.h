@@ -9,4 +9,9 @@
 mlim_status mlim_judge_fresh(mlim_refinement* refinement, mlim_context* context);
 mlim_status mlim_judge_all(mlim_refinement* refinement, mlim_context* context);
 
+/* The same for what is on its way: a part's duals are judged once they are looked along, beside insertions too,
+   and queued once they have records. */
+void mlim_judge_duals(const mlim_refinement* refinement, size_t part);
+mlim_status mlim_judge_settled(mlim_refinement* refinement, mlim_context* context);
+
 #endif
