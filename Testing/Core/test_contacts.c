@@ -90,9 +90,11 @@ static size_t count_wrong_facets(const mlim_complex* complex)
       }
       const mlim_cell* other = &complex->cells[n];
       wrong += other->facets[mlim_complex_index_apart(other, cell)] != record;
-      mlim_dual dual;
-      mlim_dual_copy(complex, (int32_t)c, k, &dual);
-      mlim_dual_cross(&complex->oracle, &dual);
+      mlim_dual dual = { .labels = { cell->label, other->label }, .is_open = 1 };
+      mlim_copy(mlim_complex_center(complex, (int32_t)c), dual.ends[0]);
+      mlim_copy(mlim_complex_center(complex, n), dual.ends[1]);
+      mlim_complex_facet_vertices(complex, (int32_t)c, k, dual.vertices);
+      mlim_duals_cross(&complex->oracle, complex->vertices, &dual, 1);
       wrong += record == 0 && dual.crosses;
       if (record > 0)
       {
