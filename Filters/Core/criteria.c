@@ -13,7 +13,7 @@ static const double DISTANCE_GUARD = 0.1;
    NEAREST of them: the labels that would hide it otherwise leave cells without any shape. Nearer, or in thicker
    films, vertices are spent that better nothing. */
 static const double FILM = 0.75;
-static const double NEAREST = 0.6;
+static const double NEAREST = 0.585;
 
 /* Part of the reach at which the look across a film begins: off the sheet itself. */
 static const double NEXT = 0.04;
