@@ -49,7 +49,7 @@ static void take(
 static void cross_some(
   const mlim_oracle* oracle, const mlim_vertex* vertices, mlim_dual* const* duals, size_t count)
 {
-  mlim_segment segments[MLIM_SEGMENTS];
+  mlim_segment segments[MLIM_SEGMENTS] = { 0 };
   mlim_crossing crossings[MLIM_SEGMENTS][MAX_CROSSINGS];
   size_t counts[MLIM_SEGMENTS];
   for (size_t k = 0; k < count; ++k)
