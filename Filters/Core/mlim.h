@@ -246,7 +246,7 @@ typedef struct mlim_options
   double crossing_tolerance;       /* length at which the search of a crossing stops; > 0 */
   double junction_merge_tolerance; /* junctions closer than this become one; >= 0 */
   double
-    smallest_distance; /* no two vertices are made closer than this, but for 0.6 of it in thin films and
+    smallest_distance; /* no two vertices are made closer than this, but for 0.585 of it in thin films and
                           where a triangle would be out of shape; > 0 */
   /* Regions are meshed finer than facet_distance where their volume would differ more than this,
      relative, from the image's; in [0, 1), 0: off. */
