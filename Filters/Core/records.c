@@ -11,9 +11,9 @@ enum
 {
   FACETS = 4,   /* of a cell */
   LOOKS = 64,   /* that wait for memory together */
-  BATCH = 8192, /* cells taken down at a time when all are brought up to date, about 5 ms */
+  BATCH = 4096, /* cells taken down at a time when all are brought up to date, about 3 ms */
   SHARED =
-    4096, /* cells that are taken down by several threads: fewer are in the cache of the one that made them */
+    2048, /* cells that are taken down by several threads: fewer are in the cache of the one that made them */
   FEW = 256, /* cells that are not worth waking a thread for */
   TAKEN = -2 /* label of the first cell that was taken down; those of others follow below */
 };

@@ -177,7 +177,9 @@ mlim_status mlim_refine_go_on(mlim_refinement* refinement, mlim_context* context
     }
     else
     {
+      /* What follows needs the room. */
       mlim_queue_shrink(&r->queue);
+      mlim_records_free(&r->records);
       break;
     }
   }
