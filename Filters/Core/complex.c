@@ -282,6 +282,15 @@ static void inherit_record(mlim_complex* complex, int32_t id)
   }
 }
 
+mlim_status mlim_complex_expect_cells(mlim_complex* complex, size_t count, mlim_context* context)
+{
+  mlim_complex_borrow_cells(complex);
+  return mlim_reserve_apart(&complex->made, &complex->made_capacity, complex->made_count + count,
+           sizeof *complex->made)
+           ? mlim_fail_memory(context, "the triangulation")
+           : MLIM_OK;
+}
+
 mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
 {
   const int is_recorded = complex->cell_count > 0;
@@ -301,8 +310,7 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
     empty_zone(complex);
   }
   mlim_delaunay_zone made;
-  const mlim_status status =
-    mlim_delaunay_fill(complex->delaunay, context, is_recorded ? &made : NULL);
+  mlim_status status = mlim_delaunay_fill(complex->delaunay, context, is_recorded ? &made : NULL);
   if (status == MLIM_OK)
   {
     mlim_complex_borrow_vertices(complex, &complex->pending);
@@ -311,18 +319,13 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   {
     return status;
   }
-  mlim_complex_borrow_cells(complex);
-  if (mlim_reserve_apart(&complex->made, &complex->made_capacity, complex->made_count + made.count,
-        sizeof *complex->made))
-  {
-    return mlim_fail_memory(context, "the triangulation");
-  }
-  for (size_t k = 0; k < made.count; ++k)
+  status = mlim_complex_expect_cells(complex, made.count, context);
+  for (size_t k = 0; k < made.count && status == MLIM_OK; ++k)
   {
     mlim_complex_take_new_cell(complex, made.cells[k]);
     inherit_record(complex, made.cells[k]);
   }
-  return MLIM_OK;
+  return status;
 }
 
 mlim_status mlim_complex_reserve(mlim_complex* complex, size_t count, mlim_context* context)

@@ -113,7 +113,9 @@ void mlim_complex_borrow_vertices(mlim_complex* complex, const mlim_vertex* last
 void mlim_complex_borrow_cells(mlim_complex* complex);
 void mlim_complex_take_cell(mlim_complex* complex, int32_t cell);
 
-/* The same for a cell to be recorded: it has no label before the next update. Room in `made` is there. */
+/* The same for cells to be recorded: borrows them, and makes room to note so many of them; they have no label
+   before the next update. */
+mlim_status mlim_complex_expect_cells(mlim_complex* complex, size_t count, mlim_context* context);
 void mlim_complex_take_new_cell(mlim_complex* complex, int32_t cell);
 
 /* Notes that a vertex's star has changed; that of all vertices of a facet; that a cell's label was changed

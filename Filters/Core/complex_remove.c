@@ -75,16 +75,11 @@ mlim_status mlim_complex_remove(
     left += !is_marked[v];
   }
   complex->vertex_count = left;
-  mlim_complex_borrow_cells(complex);
-  if (mlim_reserve_apart(&complex->made, &complex->made_capacity, complex->made_count + made.count,
-        sizeof *complex->made))
-  {
-    return mlim_fail_memory(context, "the triangulation");
-  }
-  for (size_t k = 0; k < made.count; ++k)
+  status = mlim_complex_expect_cells(complex, made.count, context);
+  for (size_t k = 0; k < made.count && status == MLIM_OK; ++k)
   {
     mlim_complex_take_new_cell(complex, made.cells[k]);
     mlim_complex_touch_cell(complex, made.cells[k]);
   }
-  return MLIM_OK;
+  return status;
 }

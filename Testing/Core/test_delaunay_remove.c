@@ -249,6 +249,12 @@ static void mark_ball(cloud* c, const double center[3], double radius)
   }
 }
 
+static void mark_one(cloud* c)
+{
+  memset(c->is_marked, 0, sizeof c->is_marked);
+  c->is_marked[MLIM_FAR_VERTICES + below((int64_t)c->count - MLIM_FAR_VERTICES)] = 1;
+}
+
 /* Single ones, scattered ones and neighbourhoods, with insertions between; in the end all that there are. */
 static void test_random(int64_t max_weight)
 {
@@ -257,8 +263,7 @@ static void test_random(int64_t max_weight)
   insert_random(delaunay, &c, 600, max_weight);
   for (int k = 0; k < 5; ++k)
   {
-    memset(c.is_marked, 0, sizeof c.is_marked);
-    c.is_marked[MLIM_FAR_VERTICES + below((int64_t)c.count - MLIM_FAR_VERTICES)] = 1;
+    mark_one(&c);
     remove_marked(delaunay, &c, 1);
     mark_some(&c, 30);
     remove_marked(delaunay, &c, 1);
@@ -291,8 +296,7 @@ static void test_lattices(void)
       insert_lattice(delaunay, &c, strides[k], heavy);
       for (int n = 0; n < 12; ++n)
       {
-        memset(c.is_marked, 0, sizeof c.is_marked);
-        c.is_marked[MLIM_FAR_VERTICES + below((int64_t)c.count - MLIM_FAR_VERTICES)] = 1;
+        mark_one(&c);
         remove_marked(delaunay, &c, 0);
       }
       mark_some(&c, 8);
