@@ -66,7 +66,7 @@ def draw_scene(axes, scene, rows):
     axes.set_ylabel("seconds of the processor", fontsize=9)
     axes.grid(True, which="major", color="#cccccc", linewidth=0.6)
     axes.grid(True, which="minor", color="#eeeeee", linewidth=0.4)
-    axes.tick_params(labelsize=8)
+    axes.tick_params(which="both", labelsize=8)
 
 
 def main():
