@@ -12,6 +12,9 @@ static const double BINS_A_TRIANGLE = 4;
 /* Nor more along an axis: their numbers have 16 bits while they are filled. */
 static const double MAX_BINS = 65535;
 
+/* Above what rounding may take from a distance. */
+static const double CERTAINLY = 1 + 1e-9;
+
 enum
 {
   AHEAD = 32, /* points */
@@ -199,8 +202,16 @@ static double segment_distance_squared(const double p[3], const double a[3], con
   return mlim_distance_squared(p, q);
 }
 
+/* Whether a triangle lies all beyond the line through one of its edges, and that is no nearer than `best`:
+   the line is `outside` / (|edge| |n|) from the foot of the point, which is `height` / |n| above the plane. */
+static int is_cut_off(double outside, double height, double best_nn, const double edge[3])
+{
+  const double length = mlim_dot(edge, edge);
+  return outside < 0 && outside * outside >= (best_nn * CERTAINLY - height * height) * length;
+}
+
 /* Inside the prism over the triangle the plane is nearest, else an edge. At most `best`; a triangle
-   whose plane is farther is not looked at closely. */
+   whose plane is farther is not looked at closely, nor one whose edges' lines are. */
 static double triangle_distance_squared(
   const double p[3], const double a[3], const double b[3], const double c[3], double best)
 {
@@ -229,6 +240,13 @@ static double triangle_distance_squared(
     if (s >= 0 && t >= 0 && s + t <= nn)
     {
       return height * height / nn;
+    }
+    double opposite[3];
+    mlim_subtract(c, b, opposite);
+    if (is_cut_off(s, height, best * nn, v) || is_cut_off(t, height, best * nn, u) ||
+        is_cut_off(nn - s - t, height, best * nn, opposite))
+    {
+      return best;
     }
   }
   return mlim_min(mlim_min(best, segment_distance_squared(p, a, b)),
@@ -323,6 +341,21 @@ static int start_at_hint(search* s, const int32_t* hint)
   return s->best <= s->enough;
 }
 
+/* How far a bin is from the point along one axis, at least: what is outside the box is in its outermost
+   bins. */
+static double gap(const search* s, int32_t bin, int32_t own, int axis)
+{
+  const double side = s->nearest->bin;
+  return bin == own  ? 0
+         : bin > own ? bin * side - s->point[axis]
+                     : s->point[axis] - (bin + 1) * side;
+}
+
+static int is_beyond(const search* s, double gap_squared)
+{
+  return gap_squared >= s->best * CERTAINLY;
+}
+
 /* Shells of bins: beyond shell s everything is at least s bins away. */
 static void search_shells(search* s)
 {
@@ -343,13 +376,17 @@ static void search_shells(search* s)
     }
     for (int32_t z = at[2] - d; z <= at[2] + d; ++z)
     {
-      for (int32_t y = at[1] - d; y <= at[1] + d; ++y)
+      const double gap_z = gap(s, z, at[2], 2);
+      for (int32_t y = at[1] - d; y <= at[1] + d && !is_beyond(s, gap_z * gap_z); ++y)
       {
         const int is_side = z == at[2] - d || z == at[2] + d || y == at[1] - d || y == at[1] + d;
+        const double gap_y = gap(s, y, at[1], 1);
+        const double gap_yz = gap_y * gap_y + gap_z * gap_z;
         for (int32_t x = at[0] - d; x <= at[0] + d; x += is_side || d == 0 ? 1 : 2 * d)
         {
+          const double gap_x = gap(s, x, at[0], 0);
           if (x >= 0 && y >= 0 && z >= 0 && x < bins[0] && y < bins[1] && z < bins[2] &&
-              look_at_bin(s, x, y, z))
+              !is_beyond(s, gap_x * gap_x + gap_yz) && look_at_bin(s, x, y, z))
           {
             return;
           }
@@ -388,22 +425,24 @@ int mlim_nearest_is_within(
   {
     return 1;
   }
+  int32_t own[3];
   int32_t low[3];
   int32_t high[3];
   for (int k = 0; k < 3; ++k)
   {
+    own[k] = bin_of(nearest, point[k], k);
     low[k] = bin_of(nearest, point[k] - bound, k);
     high[k] = bin_of(nearest, point[k] + bound, k);
   }
-  int is_found = look_at_bin(
-    &s, bin_of(nearest, point[0], 0), bin_of(nearest, point[1], 1), bin_of(nearest, point[2], 2));
+  int is_found = look_at_bin(&s, own[0], own[1], own[2]);
   for (int32_t z = low[2]; z <= high[2] && !is_found; ++z)
   {
     for (int32_t y = low[1]; y <= high[1] && !is_found; ++y)
     {
       for (int32_t x = low[0]; x <= high[0] && !is_found; ++x)
       {
-        is_found = look_at_bin(&s, x, y, z);
+        const int is_own = x == own[0] && y == own[1] && z == own[2];
+        is_found = !is_own && look_at_bin(&s, x, y, z);
       }
     }
   }
