@@ -398,14 +398,11 @@ static int holds(
   return anchored == part_count && found == count_neighbors(complex, links, ball);
 }
 
-mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* links,
-  int32_t vertex, mlim_star* star, mlim_context* context, mlim_disk* out)
+/* Of the edges of the restricted facets. */
+static mlim_status judge(const mlim_complex* complex, const mlim_ball_links* links, int32_t vertex,
+  mlim_star* star, mlim_context* context, mlim_disk* out)
 {
   *out = MLIM_DISK_EMPTY;
-  if (gather(complex, vertex, star))
-  {
-    return mlim_fail_memory(context, "a vertex's star");
-  }
   if (complex->vertices[vertex].ball < 0 && mlim_disk_is_ring(star->edges, star->edge_count / 2))
   {
     *out = MLIM_DISK_HOLDS;
@@ -421,4 +418,75 @@ mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* 
                                                                        : MLIM_DISK_FAILS;
   }
   return MLIM_OK;
+}
+
+mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* links,
+  int32_t vertex, mlim_star* star, mlim_context* context, mlim_disk* out)
+{
+  *out = MLIM_DISK_EMPTY;
+  return gather(complex, vertex, star) ? mlim_fail_memory(context, "a vertex's star")
+                                       : judge(complex, links, vertex, star, context, out);
+}
+
+/* ---- the star under other labels ---- */
+
+void mlim_fan_free(mlim_fan* fan)
+{
+  mlim_release(fan->facets);
+  *fan = (mlim_fan){ 0 };
+}
+
+/* The facets round a vertex that a cell of its star has with cells of higher ids. */
+static void add_facets(const mlim_complex* complex, int32_t id, int32_t vertex, mlim_fan* fan)
+{
+  const mlim_cell* cell = &complex->cells[id];
+  const int32_t* v = cell->vertices;
+  const int at = (v[1] == vertex) + 2 * (v[2] == vertex) + 3 * (v[3] == vertex);
+  for (int f = 0; f < 3; ++f)
+  {
+    const int32_t other = cell->neighbors[facets_at[at][f].facet];
+    if (other > id)
+    {
+      fan->facets[fan->count++] = (mlim_fan_facet){ .cells = { id, other },
+        .edge = { v[facets_at[at][f].edge[0]], v[facets_at[at][f].edge[1]] } };
+    }
+  }
+}
+
+mlim_status mlim_fan_read(const mlim_complex* complex, int32_t vertex, mlim_star* star,
+  mlim_context* context, mlim_fan* out)
+{
+  out->vertex = -1;
+  out->count = 0;
+  if (gather(complex, vertex, star) ||
+      mlim_reserve(&out->facets, &out->capacity, 3 * star->cell_count, sizeof *out->facets))
+  {
+    return mlim_fail_memory(context, "a vertex's star");
+  }
+  for (size_t c = 0; c < star->cell_count; ++c)
+  {
+    add_facets(complex, star->cells[c], vertex, out);
+  }
+  out->vertex = vertex;
+  return MLIM_OK;
+}
+
+mlim_status mlim_fan_check(const mlim_complex* complex, const mlim_ball_links* links,
+  const mlim_fan* fan, mlim_star* star, mlim_context* context, mlim_disk* out)
+{
+  size_t count = 0;
+  *out = MLIM_DISK_EMPTY;
+  if (mlim_reserve(&star->edges, &star->edge_capacity, 2 * fan->count + 2, sizeof *star->edges))
+  {
+    return mlim_fail_memory(context, "a vertex's star");
+  }
+  for (size_t f = 0; f < fan->count; ++f)
+  {
+    const mlim_fan_facet* facet = &fan->facets[f];
+    star->edges[count] = facet->edge[0];
+    star->edges[count + 1] = facet->edge[1];
+    count += complex->cells[facet->cells[0]].label != complex->cells[facet->cells[1]].label ? 2 : 0;
+  }
+  star->edge_count = count;
+  return judge(complex, links, fan->vertex, star, context, out);
 }

@@ -51,4 +51,27 @@ int mlim_disk_is_ring(const int32_t* edges, size_t count);
 mlim_status mlim_disk_check(const mlim_complex* complex, const mlim_ball_links* links,
   int32_t vertex, mlim_star* star, mlim_context* context, mlim_disk* out);
 
+/* The facets of a vertex's star, restricted or not: where labels alone change, the star need not be
+   gathered again to look at its disk. To begin with without a vertex, the rest 0. */
+typedef struct mlim_fan_facet
+{
+  int32_t cells[2];
+  int32_t edge[2]; /* opposite to the vertex */
+} mlim_fan_facet;
+
+typedef struct mlim_fan
+{
+  int32_t vertex; /* -1: not read */
+  mlim_fan_facet* facets;
+  size_t count, capacity;
+} mlim_fan;
+
+void mlim_fan_free(mlim_fan* fan);
+mlim_status mlim_fan_read(const mlim_complex* complex, int32_t vertex, mlim_star* star,
+  mlim_context* context, mlim_fan* out);
+
+/* As mlim_disk_check, with the labels as they are now. Of the star it uses the edges alone. */
+mlim_status mlim_fan_check(const mlim_complex* complex, const mlim_ball_links* links,
+  const mlim_fan* fan, mlim_star* star, mlim_context* context, mlim_disk* out);
+
 #endif

@@ -6,11 +6,6 @@
    height h has a radius-edge ratio up to 2 only if h is 0.26 R or more; cells in films leave gaps. */
 static const double LEAST_DEPTH = 0.5;
 
-enum
-{
-  LOOKS = 4 /* at the reach, its half, and so on */
-};
-
 static int32_t label_at(
   const mlim_field* field, const double middle[3], const double normal[3], double offset)
 {
@@ -24,7 +19,7 @@ int mlim_sides_are_seen_from(const mlim_field* field, const double middle[3],
 {
   int is_inner = 0;
   int is_outer = 0;
-  for (int look = 0; look < LOOKS && !(is_inner && is_outer); ++look, reach *= 0.5)
+  for (int look = 0; look < MLIM_SIDE_LOOKS && !(is_inner && is_outer); ++look, reach *= 0.5)
   {
     is_inner = is_inner || label_at(field, middle, normal, -reach) == labels[0];
     is_outer = is_outer || label_at(field, middle, normal, reach) == labels[1];
@@ -32,16 +27,15 @@ int mlim_sides_are_seen_from(const mlim_field* field, const double middle[3],
   return is_inner && is_outer;
 }
 
-int mlim_sides_are_seen(
-  const mlim_complex* complex, int32_t cell, int index, int32_t inner, int32_t outer, double reach)
+/* The middle of a facet and its normal, of length 1, out of the cell. */
+static void place_of(
+  const mlim_complex* complex, int32_t cell, int index, double middle[3], double normal[3])
 {
   int32_t v[3];
   mlim_complex_facet_vertices(complex, cell, index, v);
   const double* a = complex->vertices[v[0]].point;
   const double* b = complex->vertices[v[1]].point;
   const double* c = complex->vertices[v[2]].point;
-  double normal[3];
-  double middle[3];
   mlim_triangle_normal(a, b, c, normal);
   const double length = sqrt(mlim_dot(normal, normal));
   for (int k = 0; k < 3; ++k)
@@ -50,8 +44,32 @@ int mlim_sides_are_seen(
     middle[k] = a[k] + (b[k] - a[k] + (c[k] - a[k])) / 3;
     middle[k] = a[k] == b[k] && a[k] == c[k] ? a[k] : middle[k];
   }
+}
+
+int mlim_sides_are_seen(
+  const mlim_complex* complex, int32_t cell, int index, int32_t inner, int32_t outer, double reach)
+{
+  double normal[3];
+  double middle[3];
+  place_of(complex, cell, index, middle, normal);
   const int32_t labels[2] = { inner, outer };
   return mlim_sides_are_seen_from(complex->oracle.field, middle, normal, labels, reach);
+}
+
+void mlim_sides_look(const mlim_complex* complex, int32_t cell, int index, double reach, int begin,
+  int end, int32_t seen[2][MLIM_SIDE_LOOKS])
+{
+  double normal[3];
+  double middle[3];
+  place_of(complex, cell, index, middle, normal);
+  for (int look = 0; look < end; ++look, reach *= 0.5)
+  {
+    if (look >= begin)
+    {
+      seen[0][look] = label_at(complex->oracle.field, middle, normal, -reach);
+      seen[1][look] = label_at(complex->oracle.field, middle, normal, reach);
+    }
+  }
 }
 
 int mlim_sides_are_wide(const mlim_complex* complex, const mlim_facet* facet)

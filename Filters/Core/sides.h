@@ -4,6 +4,11 @@
 
 #include "complex.h"
 
+enum
+{
+  MLIM_SIDE_LOOKS = 4 /* at the reach, its half, and so on */
+};
+
 /* Looks from the middle of a triangle along its normal, of length 1, to both sides, at several lengths up to
    the reach: 1 if the labels are met, labels[1] on the normal's side and labels[0] on the other. */
 int mlim_sides_are_seen_from(const mlim_field* field, const double middle[3],
@@ -12,6 +17,10 @@ int mlim_sides_are_seen_from(const mlim_field* field, const double middle[3],
 /* The same for facet `index` of a cell: `inner` on the cell's side and `outer` on the other. */
 int mlim_sides_are_seen(
   const mlim_complex* complex, int32_t cell, int index, int32_t inner, int32_t outer, double reach);
+
+/* The labels that looks `begin` to `end` meet on the cell's side of a facet, seen[0], and on the other. */
+void mlim_sides_look(const mlim_complex* complex, int32_t cell, int index, double reach, int begin,
+  int end, int32_t seen[2][MLIM_SIDE_LOOKS]);
 
 /* Whether both regions beside a facet without a ball's vertex are as thick, where its dual crosses, as half
    the distance from there to its vertices. Cells between larger triangles and the other sheet of a film

@@ -6,6 +6,7 @@
 #include "tidy_cell.h"
 #include "tidy_disks.h"
 #include "tidy_look.h"
+#include "tidy_sides.h"
 #include "tidy_trial.h"
 
 #include <limits.h>
@@ -26,7 +27,8 @@ typedef struct tidier
   mlim_context* context;
   double done; /* of the stage */
   tidy_looks looks;
-  tidy_disks disks;   /* once strays are mended */
+  tidy_disks disks; /* once strays are mended */
+  tidy_sides sides;
   mlim_status status; /* of what is deep inside */
   mlim_star star;     /* of the failed vertex */
   int32_t part[MAX_PART];
@@ -194,7 +196,7 @@ enum
   SIDE_COST = 13
 };
 
-/* At least `enough`: it was not worth to count on. Disks last, since they cost most to look at; those of
+/* At least `enough`: it was not worth to count on. What costs most to look at comes last; the disks of
    the labels as they are, without a trial, are known. */
 static long cost(tidier* t, long enough, int is_trial)
 {
@@ -205,7 +207,10 @@ static long cost(tidier* t, long enough, int is_trial)
     const int32_t id = t->part[p];
     sum += tidy_cell_strays(complex, id, complex->cells[id].label);
     sum += SHAPE_COST * tidy_cell_misshapen(t->refinement, id);
-    sum += SIDE_COST * tidy_cell_unseen(t->refinement, id);
+  }
+  for (size_t p = 0; p < t->part_count && sum < enough; ++p)
+  {
+    sum += SIDE_COST * tidy_sides_unseen(&t->sides, t->part[p]);
   }
   for (size_t k = 0; k < t->vertex_count && sum < enough; ++k)
   {
@@ -365,11 +370,11 @@ static void mend_shape(tidier* t, int32_t id)
   }
 }
 
-static int is_bad(const tidier* t, int32_t id)
+static int is_bad(tidier* t, int32_t id)
 {
   const mlim_cell* cell = &t->refinement->complex.cells[id];
   return !tidy_is_frozen(&t->refinement->complex, cell) &&
-         (tidy_cell_misshapen(t->refinement, id) > 0 || tidy_cell_unseen(t->refinement, id) > 0);
+         (tidy_cell_misshapen(t->refinement, id) > 0 || tidy_sides_unseen(&t->sides, id) > 0);
 }
 
 /* Lists the cells with a bad triangle, also those that have to keep their label. */
@@ -415,6 +420,7 @@ static mlim_status mend_shapes(tidier* t)
 static mlim_status mend(tidier* t)
 {
   tidy_disks_free(&t->disks);
+  tidy_sides_forget(&t->sides);
   mlim_status status = mend_strays(t);
   status = status == MLIM_OK ? mend_disks(t) : status;
   return status == MLIM_OK ? mend_shapes(t) : status;
@@ -476,7 +482,8 @@ mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, 
     .context = context,
     .done = done,
     .looks = { .refinement = refinement, .boundary = boundary } };
-  mlim_status status = tidy_look_at_all(&t->looks, done, context);
+  mlim_status status = tidy_sides_create(refinement, context, &t->sides);
+  status = status == MLIM_OK ? tidy_look_at_all(&t->looks, done, context) : status;
   status = status == MLIM_OK ? mend_on_trial(t) : status;
   if (status == MLIM_OK)
   {
@@ -487,6 +494,7 @@ mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, 
   tidy_trial_free(&t->trial);
   mlim_star_free(&t->star);
   tidy_disks_free(&t->disks);
+  tidy_sides_free(&t->sides);
   mlim_release(t->looks.bits);
   mlim_release(t->bad);
   mlim_release(t);

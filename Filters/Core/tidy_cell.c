@@ -1,6 +1,5 @@
 #include "tidy_cell.h"
 
-#include "sides.h"
 #include "status.h"
 #include "triangle.h"
 
@@ -75,20 +74,6 @@ int tidy_cell_misshapen(const mlim_refinement* r, int32_t id)
   {
     const int32_t other = r->complex.cells[cell->neighbors[k]].label;
     count += cell->label != other && tidy_is_misshapen(r, cell, k);
-  }
-  return count;
-}
-
-int tidy_cell_unseen(const mlim_refinement* r, int32_t id)
-{
-  const mlim_complex* complex = &r->complex;
-  const mlim_cell* cell = &complex->cells[id];
-  int count = 0;
-  for (int k = 0; k < 4; ++k)
-  {
-    const int32_t other = complex->cells[cell->neighbors[k]].label;
-    count += cell->label != other &&
-             !mlim_sides_are_seen(complex, id, k, cell->label, other, r->options->facet_distance);
   }
   return count;
 }

@@ -24,9 +24,6 @@ int32_t tidy_best_label(const mlim_complex* complex, int32_t id);
 /* Facets of a cell that are misshapen. */
 int tidy_cell_misshapen(const mlim_refinement* r, int32_t id);
 
-/* Facets of a cell whose two labels are not there on their two sides. */
-int tidy_cell_unseen(const mlim_refinement* r, int32_t id);
-
 /* The label beyond a facet, for the cell to take: not from outside the box, so that caps stay flat. */
 int32_t tidy_label_beyond(const mlim_complex* complex, int32_t id, int index);
 

@@ -14,19 +14,29 @@ mlim_status tidy_disks_create(mlim_refinement* refinement, mlim_context* context
 {
   const size_t count = refinement->complex.vertex_count;
   *out = (tidy_disks){ .refinement = refinement,
+    .fans = mlim_allocate_zeroed(TIDY_FANS, sizeof *out->fans),
     .known = mlim_allocate_zeroed(count, 1),
     .changes = mlim_allocate_zeroed(count, 1) };
-  if (out->known == NULL || out->changes == NULL)
+  if (out->fans == NULL || out->known == NULL || out->changes == NULL)
   {
     tidy_disks_free(out);
     return mlim_fail_memory(context, "mending the topology");
+  }
+  for (int k = 0; k < TIDY_FANS; ++k)
+  {
+    out->fans[k].vertex = -1;
   }
   return MLIM_OK;
 }
 
 void tidy_disks_free(tidy_disks* disks)
 {
+  for (int k = 0; k < TIDY_FANS && disks->fans != NULL; ++k)
+  {
+    mlim_fan_free(&disks->fans[k]);
+  }
   mlim_star_free(&disks->star);
+  mlim_release(disks->fans);
   mlim_release(disks->known);
   mlim_release(disks->changes);
   *disks = (tidy_disks){ 0 };
@@ -37,8 +47,14 @@ mlim_status tidy_disks_check(
 {
   const mlim_refinement* r = disks->refinement;
   mlim_disk disk = MLIM_DISK_HOLDS;
-  const mlim_status status =
-    mlim_disk_check(&r->complex, &r->links, vertex, &disks->star, context, &disk);
+  mlim_fan* fan = &disks->fans[vertex & (TIDY_FANS - 1)];
+  mlim_status status = fan->vertex == vertex
+                         ? MLIM_OK
+                         : mlim_fan_read(&r->complex, vertex, &disks->star, context, fan);
+  if (status == MLIM_OK)
+  {
+    status = mlim_fan_check(&r->complex, &r->links, fan, &disks->star, context, &disk);
+  }
   *has_failed = disk == MLIM_DISK_FAILS;
   return status;
 }

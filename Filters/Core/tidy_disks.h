@@ -4,10 +4,17 @@
 
 #include "tidy.h"
 
+enum
+{
+  TIDY_FANS =
+    64 /* a power of two: the cells that are tried one after the other have fewer vertices */
+};
+
 typedef struct tidy_disks
 {
   mlim_refinement* refinement; /* borrowed */
   mlim_star star;
+  mlim_fan* fans; /* TIDY_FANS: those looked at last, by vertex */
   unsigned char*
     known; /* a vertex that has become dirty: whether its disk fails, if that is known */
   unsigned char* changes; /* a vertex: the sweep in which a label of its star was last changed */
