@@ -232,7 +232,8 @@ static mlim_status settle_pinches(build* b, mlim_mesh* out)
   (void)out;
   mlim_balls balls;
   size_t count;
-  const mlim_status status = mlim_pinch_run(&b->refinement, b->done, b->context, &balls, &count);
+  const mlim_status status =
+    mlim_pinch_run(&b->refinement, b->done, b->context, &balls, &count, &b->tidied.stray_count);
   if (status != MLIM_OK || count == 0)
   {
     return status;
@@ -241,8 +242,7 @@ static mlim_status settle_pinches(build* b, mlim_mesh* out)
   b->balls = balls;
   b->used_balls = &b->balls;
   b->refinement.complex.balls = &b->balls;
-  return mlim_tidy_count_strays(
-    &b->refinement.complex, &b->boundary, b->done, b->context, &b->tidied.stray_count);
+  return MLIM_OK;
 }
 
 static mlim_status read(build* b, mlim_mesh* out)

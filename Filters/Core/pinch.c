@@ -2,8 +2,10 @@
 
 #include "ball_list.h"
 #include "label_sets.h"
+#include "memory.h"
 #include "refine_disks.h"
 #include "status.h"
+#include "tidy.h"
 #include "vector.h"
 
 /* Radius of a contact in units of the smallest distance. Nothing is inserted any more: it is only said. */
@@ -25,7 +27,10 @@ typedef struct pinching
   mlim_set_table table;
   int32_t labels[MAX_LABELS]; /* of the star at work */
   size_t label_count;
-  size_t count;
+  int32_t* pinches; /* vertices, ascending */
+  size_t count, capacity;
+  const mlim_balls* old;
+  size_t stray_count; /* before, of the facets round pinches */
 } pinching;
 
 static mlim_status copy_balls(pinching* p)
@@ -100,6 +105,84 @@ static int is_pinched(const pinching* p, const double point[3])
   return seen == (1u << p->label_count) - 1;
 }
 
+static int is_pinch(const pinching* p, int32_t vertex)
+{
+  size_t low = 0;
+  size_t high = p->count;
+  while (low < high)
+  {
+    const size_t middle = low + (high - low) / 2;
+    low = p->pinches[middle] < vertex ? middle + 1 : low;
+    high = p->pinches[middle] < vertex ? high : middle;
+  }
+  return low < p->count && p->pinches[low] == vertex;
+}
+
+/* Whether a facet round a vertex has a pinch of a lower number: there it is counted already. */
+static int has_lower_pinch(const pinching* p, const mlim_cell* cell, int index, int32_t vertex)
+{
+  int has = 0;
+  for (int k = 1; k < 4; ++k)
+  {
+    const int32_t other = cell->vertices[(index + k) & 3];
+    has = has || (other < vertex && is_pinch(p, other));
+  }
+  return has;
+}
+
+/* Of the facets round a vertex, whose star has been gathered, but not round lower pinches. A facet is a stray by
+   its own vertices, so none other becomes one or ceases to be one. */
+static size_t count_strays(const pinching* p, int32_t vertex)
+{
+  const mlim_complex* complex = &p->refinement->complex;
+  const mlim_star* star = &p->refinement->star;
+  size_t count = 0;
+  for (size_t c = 0; c < star->cell_count; ++c)
+  {
+    const int32_t id = star->cells[c];
+    const mlim_cell* cell = &complex->cells[id];
+    for (int k = 0; k < 4; ++k)
+    {
+      const int is_first = cell->vertices[k] != vertex && id < cell->neighbors[k];
+      count +=
+        is_first && !has_lower_pinch(p, cell, k, vertex) && mlim_tidy_is_stray(complex, id, k);
+    }
+  }
+  return count;
+}
+
+/* While the vertex is none yet. */
+static mlim_status note_pinch(pinching* p, int32_t vertex)
+{
+  mlim_complex* complex = &p->refinement->complex;
+  const mlim_balls* balls = complex->balls;
+  if (mlim_reserve(&p->pinches, &p->capacity, p->count + 1, sizeof *p->pinches))
+  {
+    return mlim_fail_memory(p->context, "the contacts");
+  }
+  complex->balls = p->old;
+  p->stray_count += count_strays(p, vertex);
+  complex->balls = balls;
+  p->pinches[p->count++] = vertex;
+  return MLIM_OK;
+}
+
+/* Once the balls have their sets. */
+static mlim_status update_strays(pinching* p, size_t* stray_count)
+{
+  mlim_refinement* r = p->refinement;
+  size_t after = 0;
+  mlim_status status = MLIM_OK;
+  for (size_t n = 0; n < p->count && status == MLIM_OK; ++n)
+  {
+    mlim_disk disk;
+    status = mlim_disk_check(&r->complex, &r->links, p->pinches[n], &r->star, p->context, &disk);
+    after += status == MLIM_OK ? count_strays(p, p->pinches[n]) : 0;
+  }
+  *stray_count += after - p->stray_count;
+  return status;
+}
+
 static mlim_status make_contact(pinching* p, int32_t vertex)
 {
   mlim_complex* complex = &p->refinement->complex;
@@ -124,7 +207,6 @@ static mlim_status make_contact(pinching* p, int32_t vertex)
   {
     return mlim_fail_memory(p->context, "the contacts");
   }
-  ++p->count;
   for (size_t c = 0; c < p->refinement->star.cell_count; ++c)
   {
     mlim_complex_touch_cell(complex, p->refinement->star.cells[c]);
@@ -145,17 +227,18 @@ static mlim_status look_at_vertex(pinching* p, int32_t vertex)
   if (status == MLIM_OK && disk == MLIM_DISK_FAILS && p->count < MAX_PINCHES && list_labels(p) &&
       is_pinched(p, r->complex.vertices[vertex].point))
   {
-    status = make_contact(p, vertex);
+    status = note_pinch(p, vertex);
+    status = status == MLIM_OK ? make_contact(p, vertex) : status;
   }
   return status;
 }
 
-mlim_status mlim_pinch_run(
-  mlim_refinement* refinement, double done, mlim_context* context, mlim_balls* out, size_t* count)
+mlim_status mlim_pinch_run(mlim_refinement* refinement, double done, mlim_context* context,
+  mlim_balls* out, size_t* count, size_t* stray_count)
 {
   mlim_complex* complex = &refinement->complex;
   const mlim_balls* old = complex->balls;
-  pinching p = { .refinement = refinement, .context = context };
+  pinching p = { .refinement = refinement, .context = context, .old = old };
   *out = (mlim_balls){ 0 };
   mlim_status status = mlim_disks_settle(refinement, done, context);
   if (status != MLIM_OK)
@@ -179,6 +262,7 @@ mlim_status mlim_pinch_run(
   if (!status && p.count > 0)
   {
     status = mlim_sets_copy(&p.table.sets, &p.list.balls.sets);
+    status = status ? status : update_strays(&p, stray_count);
   }
   complex->balls = old;
   *count = p.count;
@@ -188,5 +272,6 @@ mlim_status mlim_pinch_run(
   }
   mlim_ball_list_free(&p.list);
   mlim_set_table_free(&p.table);
+  mlim_release(p.pinches);
   return status == MLIM_OUT_OF_MEMORY ? mlim_fail_memory(context, "the contacts") : status;
 }

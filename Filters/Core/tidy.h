@@ -22,8 +22,7 @@ typedef struct mlim_tidied
 mlim_status mlim_tidy_run(mlim_refinement* refinement, mlim_boundary* boundary, double done,
   mlim_context* context, mlim_tidied* out);
 
-/* The strays again: once vertices have become others. */
-mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
-  double done, mlim_context* context, size_t* count);
+/* Whether a facet, if it is between two labels, is a stray. */
+int mlim_tidy_is_stray(const mlim_complex* complex, int32_t cell, int index);
 
 #endif

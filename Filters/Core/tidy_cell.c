@@ -1,12 +1,6 @@
 #include "tidy_cell.h"
 
-#include "status.h"
 #include "triangle.h"
-
-enum
-{
-  BLOCK = 4096 /* cells whose strays are counted together */
-};
 
 int tidy_is_frozen(const mlim_complex* complex, const mlim_cell* cell)
 {
@@ -37,6 +31,14 @@ int tidy_stray_count(
       complex, &complex->vertices[cell->vertices[(index + k) & 3]], &sheet);
   }
   return count;
+}
+
+int mlim_tidy_is_stray(const mlim_complex* complex, int32_t cell, int index)
+{
+  const mlim_cell* own = &complex->cells[cell];
+  const int32_t other = own->neighbors[index];
+  return other != MLIM_NO_CELL &&
+         tidy_stray_count(complex, own, index, own->label, complex->cells[other].label) > 0;
 }
 
 int tidy_is_misshapen(const mlim_refinement* r, const mlim_cell* cell, int index)
@@ -107,41 +109,4 @@ int32_t tidy_best_label(const mlim_complex* complex, int32_t id)
     }
   }
   return best;
-}
-
-typedef struct stray_job
-{
-  const mlim_complex* complex;
-  const mlim_boundary* boundary;
-} stray_job;
-
-static size_t count_strays(const void* data, size_t begin, size_t end)
-{
-  const stray_job* job = (const stray_job*)data;
-  const mlim_complex* complex = job->complex;
-  size_t count = 0;
-  for (size_t c = begin; c < end; ++c)
-  {
-    const mlim_cell* cell = &complex->cells[c];
-    const unsigned sides = job->boundary->sides[c] >> MLIM_FIRST_SHIFT;
-    for (int k = 0; sides >> k != 0; ++k)
-    {
-      count += sides >> k & 1u && tidy_stray_count(complex, cell, k, cell->label,
-                                    complex->cells[cell->neighbors[k]].label) > 0;
-    }
-  }
-  return count;
-}
-
-mlim_status mlim_tidy_count_strays(const mlim_complex* complex, const mlim_boundary* boundary,
-  double done, mlim_context* context, size_t* count)
-{
-  return mlim_parallel_count(context,
-    &(mlim_counting){ .item_count = complex->cell_count,
-      .block = BLOCK,
-      .count = count_strays,
-      .job = &(stray_job){ .complex = complex, .boundary = boundary },
-      .stage = MLIM_STAGE_CERTIFICATE,
-      .done = done },
-    count);
 }
