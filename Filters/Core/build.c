@@ -356,9 +356,12 @@ static mlim_status measure_field(build* b)
   const size_t labels = (size_t)mlim_field_label_count(b->field);
   b->volumes = mlim_allocate(labels, sizeof *b->volumes);
   b->voxels = mlim_allocate(labels, sizeof *b->voxels);
-  return b->volumes != NULL && b->voxels != NULL
-           ? mlim_volumes_of_field(b->field, b->context, b->volumes, b->voxels)
-           : mlim_fail_memory(b->context, "the volumes of the labels");
+  if (b->volumes == NULL || b->voxels == NULL)
+  {
+    return mlim_fail_memory(b->context, "the volumes of the labels");
+  }
+  mlim_components_count_voxels(&b->components, labels, b->voxels);
+  return mlim_volumes_of_field(b->field, b->context, b->volumes);
 }
 
 static mlim_status fill_volume(build* b, const mlim_mesh* mesh, size_t count, mlim_volume* out)

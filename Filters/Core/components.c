@@ -311,6 +311,16 @@ int32_t mlim_components_at(
            : components->largest[mlim_field_point_label(field, point)];
 }
 
+void mlim_components_count_voxels(
+  const mlim_components* components, size_t label_count, size_t* voxels)
+{
+  memset(voxels, 0, label_count * sizeof *voxels);
+  for (size_t c = 0; c < components->count; ++c)
+  {
+    voxels[components->components[c].label] += components->components[c].voxel_count;
+  }
+}
+
 void mlim_components_free(mlim_components* components)
 {
   mlim_release(components->components);

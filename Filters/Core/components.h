@@ -34,6 +34,11 @@ mlim_status mlim_components_find(
 /* The component of a grid point of the same field. */
 int32_t mlim_components_at(
   const mlim_components* components, const mlim_field* field, const int32_t point[3]);
+
+/* The grid points of each label. */
+void mlim_components_count_voxels(
+  const mlim_components* components, size_t label_count, size_t* voxels);
+
 void mlim_components_free(mlim_components* components);
 
 #endif

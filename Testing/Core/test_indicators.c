@@ -295,9 +295,8 @@ static double ball_volume(const mlim_indicator_options* options)
   const mlim_grid grid = label_grid(&map, indicators, arrays);
   mlim_field* field = NULL;
   double volumes[2];
-  size_t voxels[2];
   CHECK(mlim_field_create(&grid, NULL, &field) == MLIM_OK);
-  CHECK(mlim_volumes_of_field(field, NULL, volumes, voxels) == MLIM_OK);
+  CHECK(mlim_volumes_of_field(field, NULL, volumes) == MLIM_OK);
   const double result = volumes[1] / (double)count_id(scene.values, scene.count, 4) - 1;
   mlim_field_free(field);
   mlim_indicators_free(indicators);
