@@ -10,6 +10,7 @@
 
 enum
 {
+  AHEAD = 64,        /* cells: one in five has a facet between labels */
   LOOK_EVERY = 65536 /* cells between two looks at the host: some milliseconds */
 };
 
@@ -75,6 +76,15 @@ static void ask_ahead(const tidy_looks* looks, size_t cell, int has_records)
   }
 }
 
+static void ask_for_cell(const tidy_looks* looks, size_t cell)
+{
+  if (looks->boundary->sides[cell] >> MLIM_FIRST_SHIFT != 0)
+  {
+    mlim_prefetch(&looks->refinement->complex.cells[cell]);
+    mlim_prefetch(&looks->refinement->complex.cells[cell].facets);
+  }
+}
+
 /* Looks at each facet from its cell of the lower id. */
 static void look_body(void* data, size_t begin, size_t end)
 {
@@ -83,11 +93,11 @@ static void look_body(void* data, size_t begin, size_t end)
   {
     const unsigned sides = looks->boundary->sides[c] >> MLIM_FIRST_SHIFT;
     unsigned bits = 0;
-    if (c + 3 * MLIM_CELLS_AHEAD < end)
+    if (c + 3 * AHEAD < end)
     {
-      mlim_prefetch(&looks->refinement->complex.cells[c + 3 * MLIM_CELLS_AHEAD]);
-      ask_ahead(looks, c + 2 * MLIM_CELLS_AHEAD, 0);
-      ask_ahead(looks, c + MLIM_CELLS_AHEAD, 1);
+      ask_for_cell(looks, c + 3 * AHEAD);
+      ask_ahead(looks, c + 2 * AHEAD, 0);
+      ask_ahead(looks, c + AHEAD, 1);
     }
     for (int k = 0; sides >> k != 0; ++k)
     {
