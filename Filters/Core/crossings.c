@@ -7,7 +7,8 @@
 enum
 {
   MAX_ON_EDGE = 8, /* label changes on one grid edge; more say nothing new */
-  EDGES = 32       /* that wait for memory together */
+  EDGES = 32,      /* that wait for memory together */
+  POINTS = 32      /* of a row that are compared with their neighbours together */
 };
 
 /* A cell that has the grid point, which is corner `corner` of it. */
@@ -131,31 +132,74 @@ static void cross_edges(batch* b)
   b->edge_count = 0;
 }
 
+/* Grid points of a row, and how far it is from each to the next one along each axis; 0 where there is none. */
+typedef struct row
+{
+  const uint16_t* labels;
+  size_t steps[3];
+} row;
+
+/* Whether an edge that begins at one of some points has two labels. Without branches, so that compilers take
+   many points at a time. */
+static int has_change(const uint16_t* labels, const size_t steps[3])
+{
+  uint16_t changes = 0;
+  for (size_t k = 0; k < POINTS; ++k)
+  {
+    changes |= (uint16_t)((labels[k] ^ labels[k + steps[0]]) | (labels[k] ^ labels[k + steps[1]]) |
+                          (labels[k] ^ labels[k + steps[2]]));
+  }
+  return changes != 0;
+}
+
+static void add_edges(batch* b, const row* row, const int32_t point[3])
+{
+  const uint16_t* label = row->labels + point[0];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (label[row->steps[axis]] != *label)
+    {
+      memcpy(b->edges[b->edge_count].low, point, sizeof b->edges->low);
+      b->edges[b->edge_count++].axis = axis;
+      if (b->edge_count == EDGES)
+      {
+        cross_edges(b);
+      }
+    }
+  }
+}
+
+static void cross_row(batch* b, row* row, int32_t y, int32_t z)
+{
+  const int32_t count = mlim_field_grid_of(b->oracle->field)->dims[0];
+  for (int32_t begin = 0; begin < count; begin += POINTS)
+  {
+    const int32_t end = begin + POINTS < count ? begin + POINTS : count;
+    if (end < count && !has_change(row->labels + begin, row->steps))
+    {
+      continue;
+    }
+    for (int32_t x = begin; x < end; ++x)
+    {
+      row->steps[0] = x + 1 < count;
+      add_edges(b, row, (const int32_t[3]){ x, y, z });
+    }
+  }
+}
+
 void mlim_crossings_of_slice(
   const mlim_oracle* oracle, int32_t z, mlim_crossings_visit visit, void* user)
 {
   const int32_t* dims = mlim_field_grid_of(oracle->field)->dims;
-  const size_t steps[3] = { 1, (size_t)dims[0], (size_t)dims[0] * (size_t)dims[1] };
-  const uint16_t* label = mlim_field_point_labels(oracle->field) + steps[2] * (size_t)z;
+  const size_t width = (size_t)dims[0];
+  const size_t slice = width * (size_t)dims[1];
+  const uint16_t* labels = mlim_field_point_labels(oracle->field) + slice * (size_t)z;
   batch b = { .oracle = oracle, .visit = visit, .user = user };
-  int32_t p[3] = { 0, 0, z };
-  for (p[1] = 0; p[1] < dims[1]; ++p[1])
+  for (int32_t y = 0; y < dims[1]; ++y)
   {
-    for (p[0] = 0; p[0] < dims[0]; ++p[0], ++label)
-    {
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        if (p[axis] + 1 < dims[axis] && label[steps[axis]] != *label)
-        {
-          memcpy(b.edges[b.edge_count].low, p, sizeof p);
-          b.edges[b.edge_count++].axis = axis;
-          if (b.edge_count == EDGES)
-          {
-            cross_edges(&b);
-          }
-        }
-      }
-    }
+    row row = { .labels = labels + width * (size_t)y,
+      .steps = { 1, y + 1 < dims[1] ? width : 0, z + 1 < dims[2] ? slice : 0 } };
+    cross_row(&b, &row, y, z);
   }
   cross_edges(&b);
   hand_over(&b);

@@ -36,7 +36,8 @@ static const double* point_of(const mlim_nearest* nearest, int32_t vertex)
 
 enum
 {
-  SLABS = 4 /* of bins, sorted for themselves: each looks at the layers of all triangles */
+  SLABS = 4,      /* of bins, sorted for themselves: each looks at the layers of all triangles */
+  SORT_AHEAD = 16 /* triangles */
 };
 
 /* Low and high bins that a triangle may touch. */
@@ -68,11 +69,23 @@ static bin_range range_of(const mlim_nearest* nearest, size_t t, int axis)
     .high = (uint16_t)bin_of(nearest, mlim_max(a, mlim_max(b, c)), axis) };
 }
 
+static void ask_for_points(const mlim_nearest* nearest, size_t t)
+{
+  const int32_t* v = nearest->mesh.vertices + 3 * t;
+  mlim_prefetch(point_of(nearest, v[0]));
+  mlim_prefetch(point_of(nearest, v[1]));
+  mlim_prefetch(point_of(nearest, v[2]));
+}
+
 static void range_body(void* data, size_t begin, size_t end)
 {
   const sorting* s = (const sorting*)data;
   for (size_t t = begin; t < end; ++t)
   {
+    if (t + SORT_AHEAD < end)
+    {
+      ask_for_points(s->nearest, t + SORT_AHEAD);
+    }
     s->ranges[t].x = range_of(s->nearest, t, 0);
     s->ranges[t].y = range_of(s->nearest, t, 1);
     s->layers[t] = range_of(s->nearest, t, 2);
@@ -287,10 +300,7 @@ void mlim_nearest_ahead(const mlim_nearest* nearest, const mlim_nearest_points* 
     {
       for (uint32_t t = *offsets[k]; t < offsets[k][1] && t < *offsets[k] + FIRST; ++t)
       {
-        const int32_t* v = nearest->mesh.vertices + 3 * (size_t)nearest->triangles[t];
-        mlim_prefetch(point_of(nearest, v[0]));
-        mlim_prefetch(point_of(nearest, v[1]));
-        mlim_prefetch(point_of(nearest, v[2]));
+        ask_for_points(nearest, (size_t)nearest->triangles[t]);
       }
     }
   }
