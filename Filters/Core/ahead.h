@@ -12,13 +12,6 @@ enum
   MLIM_VERTICES_AHEAD = 8 /* and to those whose vertices are, whose cells are there by then */
 };
 
-/* A cell with its label, which may be in the next line of the cache. */
-static inline void mlim_ahead_of_label(const mlim_complex* complex, int32_t cell)
-{
-  mlim_prefetch(&complex->cells[cell]);
-  mlim_prefetch(&complex->cells[cell].label);
-}
-
 /* The cells of the records from f on, of which `end` is past the last. */
 static inline void mlim_ahead_of_cell(const mlim_complex* complex, size_t f, size_t end)
 {
@@ -28,13 +21,13 @@ static inline void mlim_ahead_of_cell(const mlim_complex* complex, size_t f, siz
   }
 }
 
-/* The label beyond a facet. */
+/* The cell beyond a facet. */
 static inline void mlim_ahead_of_neighbor(const mlim_complex* complex, int32_t cell, int index)
 {
   const int32_t other = complex->cells[cell].neighbors[index];
   if (other >= 0)
   {
-    mlim_prefetch(&complex->cells[other].label);
+    mlim_prefetch(&complex->cells[other]);
   }
 }
 

@@ -80,7 +80,7 @@ static void ask_ahead(const reader* r, size_t t, size_t end)
 {
   if (t + MLIM_CELLS_AHEAD < end)
   {
-    mlim_ahead_of_label(r->complex, r->facets[t + MLIM_CELLS_AHEAD].cell);
+    mlim_prefetch(&r->complex->cells[r->facets[t + MLIM_CELLS_AHEAD].cell]);
   }
   if (t + MLIM_VERTICES_AHEAD < end)
   {

@@ -132,7 +132,7 @@ static void ask_ahead(const skin_job* job, size_t f, size_t end)
   const mlim_facet* facets = complex->facets;
   if (f + MLIM_CELLS_AHEAD < end && is_new(&facets[f + MLIM_CELLS_AHEAD]))
   {
-    mlim_ahead_of_label(complex, facets[f + MLIM_CELLS_AHEAD].cell);
+    mlim_prefetch(&complex->cells[facets[f + MLIM_CELLS_AHEAD].cell]);
   }
   if (f + MLIM_VERTICES_AHEAD < end && is_new(&facets[f + MLIM_VERTICES_AHEAD]))
   {

@@ -305,7 +305,7 @@ static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
   const mlim_facet* facets = complex->facets;
   if (f + MLIM_CELLS_AHEAD < end && is_open(&facets[f + MLIM_CELLS_AHEAD]))
   {
-    mlim_ahead_of_label(complex, facets[f + MLIM_CELLS_AHEAD].cell);
+    mlim_prefetch(&complex->cells[facets[f + MLIM_CELLS_AHEAD].cell]);
     mlim_field_ahead(complex->oracle.field, facets[f + MLIM_CELLS_AHEAD].crossing, 0);
   }
   if (f + MLIM_VERTICES_AHEAD < end && is_open(&facets[f + MLIM_VERTICES_AHEAD]))
