@@ -8,15 +8,22 @@
 
 enum
 {
-  FIRST_CELLS = 1 << 8 /* more than there are fours of far vertices */
+  FIRST_CELLS = 1 << 8, /* more than there are fours of far vertices */
+  /* Bytes before the first cell: large blocks of memory begin 16 bytes behind a line of the cache, and a cell
+     is as long as a line. So each is in one line and not in two. */
+  CELLS_BEGIN = 48
 };
 
 int delaunay_reserve_cells(mlim_delaunay* d, size_t count)
 {
-  const size_t needed = d->cell_count + count;
-  return needed > INT32_MAX ||
-         mlim_reserve_apart(&d->cells, &d->cell_capacity, needed, sizeof *d->cells) ||
-         mlim_reserve_apart(&d->spheres, &d->sphere_capacity, needed, sizeof *d->spheres);
+  const size_t needed = d->cell_count + count + 1; /* one for what is before the first */
+  if (needed > INT32_MAX ||
+      mlim_reserve_apart(&d->cell_memory, &d->cell_capacity, needed, sizeof *d->cells))
+  {
+    return 1;
+  }
+  d->cells = (mlim_cell*)((char*)d->cell_memory + CELLS_BEGIN);
+  return mlim_reserve_apart(&d->spheres, &d->sphere_capacity, needed, sizeof *d->spheres);
 }
 
 int delaunay_reserve_vertices(mlim_delaunay* d, size_t count)
@@ -167,7 +174,7 @@ void mlim_delaunay_free(mlim_delaunay* delaunay)
   {
     return;
   }
-  mlim_release(delaunay->cells);
+  mlim_release(delaunay->cell_memory);
   mlim_release(delaunay->spheres);
   mlim_release(delaunay->free_cells);
   mlim_release(delaunay->vertices);

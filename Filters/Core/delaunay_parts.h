@@ -25,7 +25,8 @@ typedef struct delaunay_point
 struct mlim_delaunay
 {
   double size[3]; /* of the box */
-  mlim_cell* cells;
+  void* cell_memory;
+  mlim_cell* cells; /* in it */
   mlim_power_sphere* spheres;
   size_t cell_count, cell_capacity, sphere_capacity;
   int32_t* free_cells; /* ids of dead cells, last in first out */
