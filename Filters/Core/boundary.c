@@ -7,6 +7,7 @@
 
 enum
 {
+  AHEAD = 16,             /* cells */
   CELLS_A_PIECE = 1 << 18 /* between two looks at the host: some milliseconds */
 };
 
@@ -26,11 +27,25 @@ static void label_body(void* data, size_t begin, size_t end)
   }
 }
 
+static void ask_ahead(const boundary_job* job, size_t c, size_t end)
+{
+  if (c + 2 * AHEAD < end)
+  {
+    mlim_prefetch(&job->complex->cells[c + 2 * AHEAD]);
+  }
+  for (int k = 0; k < 4 && c + AHEAD < end; ++k)
+  {
+    const int32_t other = job->complex->cells[c + AHEAD].neighbors[k];
+    mlim_prefetch(&job->labels[other < 0 ? 0 : other]);
+  }
+}
+
 static void side_body(void* data, size_t begin, size_t end)
 {
   const boundary_job* job = (const boundary_job*)data;
   for (size_t c = begin; c < end; ++c)
   {
+    ask_ahead(job, c, end);
     const mlim_cell* cell = &job->complex->cells[c];
     unsigned sides = 0;
     for (int k = 0; k < 4 && cell->vertices[0] >= 0; ++k)
