@@ -8,8 +8,8 @@
 
 enum
 {
-  MLIM_CELLS_AHEAD = 16,  /* facets from the one at work to those whose cells are asked for */
-  MLIM_VERTICES_AHEAD = 8 /* and to those whose vertices are, whose cells are there by then */
+  MLIM_CELLS_AHEAD = 32,  /* facets from the one at work to those whose cells are asked for */
+  MLIM_VERTICES_AHEAD = 16 /* and to those whose vertices are, whose cells are there by then */
 };
 
 /* The cells of the records from f on, of which `end` is past the last. */
