@@ -8,7 +8,7 @@
 
 enum
 {
-  MLIM_CELLS_AHEAD = 32,  /* facets from the one at work to those whose cells are asked for */
+  MLIM_CELLS_AHEAD = 32,   /* facets from the one at work to those whose cells are asked for */
   MLIM_VERTICES_AHEAD = 16 /* and to those whose vertices are, whose cells are there by then */
 };
 

@@ -294,9 +294,15 @@ typedef struct place
   int32_t cell[3];
   double at[3];
   uint32_t word;
+  const uint32_t* entry;
   int reach;
   int is_inside;
 } place;
+
+enum
+{
+  BATCH = 32 /* places; an insertion makes about 25 cells */
+};
 
 static void find_place(const mlim_field* field, const double point[3], place* out)
 {
@@ -342,10 +348,6 @@ static void look_at_place(const mlim_field* field, const place* where, mlim_fiel
 
 void mlim_field_look_at(const mlim_field* field, mlim_field_look* looks, size_t count)
 {
-  enum
-  {
-    BATCH = 32 /* an insertion makes about 25 cells */
-  };
   place places[BATCH];
   for (size_t begin = 0; begin < count; begin += BATCH)
   {
@@ -357,6 +359,48 @@ void mlim_field_look_at(const mlim_field* field, mlim_field_look* looks, size_t 
     for (size_t k = begin; k < end; ++k)
     {
       look_at_place(field, &places[k - begin], &looks[k]);
+    }
+  }
+}
+
+/* As far as its entry, whose values are asked for. */
+static void find_entry(const mlim_field* field, place* where)
+{
+  where->entry = NULL;
+  if (where->is_inside && where->word & (uint32_t)MIXED)
+  {
+    where->entry = field_pool_entry(field, where->cell, where->word);
+    mlim_prefetch(where->entry);
+    mlim_prefetch(where->entry + PAIR_WORDS - 1);
+  }
+}
+
+static int32_t label_of(const mlim_field* field, const place* where)
+{
+  return where->entry != NULL ? field_mixed_label(where->entry, where->word, where->at)
+         : where->is_inside   ? (int32_t)where->word
+                              : field->outside_label;
+}
+
+void mlim_field_labels(const mlim_field* field, const double* points, size_t count, int32_t* labels)
+{
+  place places[BATCH];
+  for (size_t begin = 0; begin < count; begin += BATCH)
+  {
+    const size_t end = count - begin < BATCH ? count : begin + BATCH;
+    for (size_t k = begin; k < end; ++k)
+    {
+      place* where = &places[k - begin];
+      where->is_inside = find_cell(field, points + 3 * k, where->cell, where->at);
+      where->word = where->is_inside ? field_cell_word(field, where->cell) : 0;
+    }
+    for (size_t k = begin; k < end; ++k)
+    {
+      find_entry(field, &places[k - begin]);
+    }
+    for (size_t k = begin; k < end; ++k)
+    {
+      labels[k] = label_of(field, &places[k - begin]);
     }
   }
 }

@@ -52,6 +52,10 @@ int32_t mlim_field_find_many(const mlim_field* field, const int32_t from[3]);
 int32_t mlim_field_point_label(const mlim_field* field, const int32_t point[3]);
 const uint16_t* mlim_field_point_labels(const mlim_field* field);
 
+/* mlim_field_label of some points, 3 numbers each, which wait for memory together. */
+void mlim_field_labels(
+  const mlim_field* field, const double* points, size_t count, int32_t* labels);
+
 /* What there is at a point: mlim_field_label, and half the side, in cells, of a cube round the point all of
    which has this label; 0 in a mixed cell. */
 typedef struct mlim_field_look

@@ -27,4 +27,20 @@ void mlim_sides_look(const mlim_complex* complex, int32_t cell, int index, doubl
    are flat, whatever their vertices. Facets with a ball's vertex, and in the box's faces, count as wide. */
 int mlim_sides_are_wide(const mlim_complex* complex, const mlim_facet* facet);
 
+enum
+{
+  MLIM_SIDES_TOGETHER = 16 /* facets that wait for memory together */
+};
+
+/* A facet between two labels, and whether it is wide and both are seen beside it. */
+typedef struct mlim_sides
+{
+  const mlim_facet* facet;
+  double reach;
+  int are_right;
+} mlim_sides;
+
+/* For no more facets than may wait together. */
+void mlim_sides_judge(const mlim_complex* complex, mlim_sides* sides, size_t count);
+
 #endif

@@ -282,19 +282,6 @@ static mlim_status look_for_far(mlim_verification* v, mlim_context* context, siz
 
 /* ---- facets off their interface, or too large for their film ---- */
 
-/* The height of the crossing says nothing about the rest of the facet: a bump of the interface may
-   leave it between two places of one label. Nor does it say how far the other sheet of a film is. */
-static int is_right(const mlim_refinement* r, const mlim_facet* facet)
-{
-  const mlim_complex* complex = &r->complex;
-  const mlim_cell* cell = &complex->cells[facet->cell];
-  const int32_t other = complex->cells[cell->neighbors[facet->index]].label;
-  return cell->label == other ||
-         (mlim_sides_are_wide(complex, facet) &&
-           mlim_sides_are_seen(complex, facet->cell, facet->index, cell->label, other,
-             mlim_criteria_distance(complex, r->options, &facet->sheet)));
-}
-
 static int is_open(const mlim_facet* facet)
 {
   return facet->is_alive && !facet->is_settled;
@@ -317,18 +304,53 @@ static void ask_ahead(const mlim_complex* complex, size_t f, size_t end)
   }
 }
 
+/* The height of the crossing says nothing about the rest of the facet: a bump of the interface may
+   leave it between two places of one label. Nor does it say how far the other sheet of a film is. */
+static void judge(const mlim_refinement* r, mlim_facet* const* facets, size_t count)
+{
+  mlim_sides sides[MLIM_SIDES_TOGETHER];
+  for (size_t k = 0; k < count; ++k)
+  {
+    sides[k] = (mlim_sides){ .facet = facets[k],
+      .reach = mlim_criteria_distance(&r->complex, r->options, &facets[k]->sheet) };
+  }
+  mlim_sides_judge(&r->complex, sides, count);
+  for (size_t k = 0; k < count; ++k)
+  {
+    facets[k]->is_settled = (unsigned char)(sides[k].are_right & 1);
+  }
+}
+
+static int is_between_labels(const mlim_complex* complex, const mlim_facet* facet)
+{
+  const mlim_cell* cell = &complex->cells[facet->cell];
+  return cell->label != complex->cells[cell->neighbors[facet->index]].label;
+}
+
 static void side_body(void* data, size_t begin, size_t end)
 {
   mlim_refinement* r = (mlim_refinement*)data;
+  mlim_facet* facets[MLIM_SIDES_TOGETHER];
+  size_t count = 0;
   for (size_t f = begin; f < end; ++f)
   {
     mlim_facet* facet = &r->complex.facets[f];
     ask_ahead(&r->complex, f, end);
-    if (is_open(facet))
+    if (is_open(facet) && is_between_labels(&r->complex, facet))
     {
-      facet->is_settled = (unsigned char)is_right(r, facet);
+      facets[count++] = facet;
+    }
+    else if (is_open(facet))
+    {
+      facet->is_settled = 1;
+    }
+    if (count == MLIM_SIDES_TOGETHER)
+    {
+      judge(r, facets, count);
+      count = 0;
     }
   }
+  judge(r, facets, count);
 }
 
 static mlim_status look_for_sides(const mlim_verification* v, mlim_context* context, size_t* count)
