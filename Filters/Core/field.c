@@ -288,14 +288,15 @@ int32_t mlim_field_label(const mlim_field* field, const double point[3])
                                 : (int32_t)word;
 }
 
-/* A point's cell, while its values are on their way from memory. */
+/* A point's cell, while what there is of it is on its way from memory. */
 typedef struct place
 {
   int32_t cell[3];
   double at[3];
+  size_t brick;
+  uint32_t coarse; /* of the brick */
   uint32_t word;
-  const uint32_t* entry;
-  int reach;
+  const uint32_t* entry; /* of a mixed cell, or NULL */
   int is_inside;
 } place;
 
@@ -304,13 +305,84 @@ enum
   BATCH = 32 /* places; an insertion makes about 25 cells */
 };
 
-static void find_place(const mlim_field* field, const double point[3], place* out)
+static void ask_for_brick(const mlim_field* field, const double point[3], place* out)
 {
+  out->entry = NULL;
   out->is_inside = find_cell(field, point, out->cell, out->at);
   if (out->is_inside)
   {
-    out->word = field_cell_word(field, out->cell);
-    out->reach = field_clearance(field, out->cell);
+    out->brick = field_brick_of(field, out->cell);
+    mlim_prefetch(&field->coarse[out->brick]);
+  }
+}
+
+static const uint32_t* word_of(const mlim_field* field, const place* where)
+{
+  return field->layers[where->cell[2] >> 2].words + BRICK_CELLS * (size_t)(where->coarse & DETAIL) +
+         field_slot_of(where->cell);
+}
+
+static void ask_for_word(const mlim_field* field, place* where)
+{
+  if (where->is_inside)
+  {
+    where->coarse = field->coarse[where->brick];
+    if (where->coarse & (uint32_t)MIXED)
+    {
+      mlim_prefetch(word_of(field, where));
+    }
+  }
+}
+
+static void ask_for_entry(const mlim_field* field, place* where)
+{
+  if (where->is_inside)
+  {
+    where->word = where->coarse & (uint32_t)MIXED ? *word_of(field, where) : where->coarse;
+    if (where->word & (uint32_t)MIXED)
+    {
+      where->entry = field_pool_entry(field, where->cell, where->word);
+      mlim_prefetch(where->entry);
+      mlim_prefetch(where->entry + PAIR_WORDS - 1);
+    }
+  }
+}
+
+/* What lies behind the bricks, which have been asked for. */
+static void fetch_places(const mlim_field* field, place* places, size_t count)
+{
+  for (size_t k = 0; k < count; ++k)
+  {
+    ask_for_word(field, &places[k]);
+  }
+  for (size_t k = 0; k < count; ++k)
+  {
+    ask_for_entry(field, &places[k]);
+  }
+}
+
+static int32_t label_of(const mlim_field* field, const place* where)
+{
+  return where->entry != NULL ? field_mixed_label(where->entry, where->word, where->at)
+         : where->is_inside   ? (int32_t)where->word
+                              : field->outside_label;
+}
+
+void mlim_field_labels(const mlim_field* field, const double* points, size_t count, int32_t* labels)
+{
+  place places[BATCH];
+  for (size_t begin = 0; begin < count; begin += BATCH)
+  {
+    const size_t some = count - begin < BATCH ? count - begin : BATCH;
+    for (size_t k = 0; k < some; ++k)
+    {
+      ask_for_brick(field, points + 3 * (begin + k), &places[k]);
+    }
+    fetch_places(field, places, some);
+    for (size_t k = 0; k < some; ++k)
+    {
+      labels[begin + k] = label_of(field, &places[k]);
+    }
   }
 }
 
@@ -327,8 +399,7 @@ static void look_at_place(const mlim_field* field, const place* where, mlim_fiel
   if (where->word & (uint32_t)MIXED)
   {
     look->clearance = 0;
-    look->label =
-      field_mixed_label(field_pool_entry(field, where->cell, where->word), where->word, where->at);
+    look->label = field_mixed_label(where->entry, where->word, where->at);
     return;
   }
   double least = 1;
@@ -336,7 +407,8 @@ static void look_at_place(const mlim_field* field, const place* where, mlim_fiel
   {
     least = mlim_min(least, mlim_min(where->at[k], 1 - where->at[k]));
   }
-  double reach = where->reach - 1 + least;
+  double reach =
+    field->clearances[BRICK_CELLS * where->brick + field_slot_of(where->cell)] - 1 + least;
   for (int k = 0; k < 3 && where->word != (uint32_t)field->outside_label; ++k)
   {
     const double in = where->cell[k] + where->at[k];
@@ -351,56 +423,19 @@ void mlim_field_look_at(const mlim_field* field, mlim_field_look* looks, size_t 
   place places[BATCH];
   for (size_t begin = 0; begin < count; begin += BATCH)
   {
-    const size_t end = count - begin < BATCH ? count : begin + BATCH;
-    for (size_t k = begin; k < end; ++k)
+    const size_t some = count - begin < BATCH ? count - begin : BATCH;
+    for (size_t k = 0; k < some; ++k)
     {
-      find_place(field, looks[k].point, &places[k - begin]);
+      ask_for_brick(field, looks[begin + k].point, &places[k]);
+      if (places[k].is_inside)
+      {
+        mlim_prefetch(&field->clearances[BRICK_CELLS * places[k].brick]);
+      }
     }
-    for (size_t k = begin; k < end; ++k)
+    fetch_places(field, places, some);
+    for (size_t k = 0; k < some; ++k)
     {
-      look_at_place(field, &places[k - begin], &looks[k]);
-    }
-  }
-}
-
-/* As far as its entry, whose values are asked for. */
-static void find_entry(const mlim_field* field, place* where)
-{
-  where->entry = NULL;
-  if (where->is_inside && where->word & (uint32_t)MIXED)
-  {
-    where->entry = field_pool_entry(field, where->cell, where->word);
-    mlim_prefetch(where->entry);
-    mlim_prefetch(where->entry + PAIR_WORDS - 1);
-  }
-}
-
-static int32_t label_of(const mlim_field* field, const place* where)
-{
-  return where->entry != NULL ? field_mixed_label(where->entry, where->word, where->at)
-         : where->is_inside   ? (int32_t)where->word
-                              : field->outside_label;
-}
-
-void mlim_field_labels(const mlim_field* field, const double* points, size_t count, int32_t* labels)
-{
-  place places[BATCH];
-  for (size_t begin = 0; begin < count; begin += BATCH)
-  {
-    const size_t end = count - begin < BATCH ? count : begin + BATCH;
-    for (size_t k = begin; k < end; ++k)
-    {
-      place* where = &places[k - begin];
-      where->is_inside = find_cell(field, points + 3 * k, where->cell, where->at);
-      where->word = where->is_inside ? field_cell_word(field, where->cell) : 0;
-    }
-    for (size_t k = begin; k < end; ++k)
-    {
-      find_entry(field, &places[k - begin]);
-    }
-    for (size_t k = begin; k < end; ++k)
-    {
-      labels[k] = label_of(field, &places[k - begin]);
+      look_at_place(field, &places[k], &looks[begin + k]);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "refine_batch.h"
 
+#include "ahead.h"
 #include "partner.h"
 #include "refine_judge.h"
 #include "status.h"
@@ -9,8 +10,11 @@ enum
 {
   UPDATE_EVERY = 1536, /* cells made between two updates: they are still in the cache then */
   VERTICES = 2048, /* room for what an update's cells have at most: one in four, and its partners */
-  PARTS = 7,       /* of what is looked at; with the insertions as many as hosts hand out singly */
-  FEW = 256        /* cells that are not worth waking a thread for */
+  RECORDS_AHEAD = 6, /* entries of the batch to the one whose record is asked for */
+  CELLS_AHEAD = 4,   /* and to those whose cell is, and the one beyond */
+  NEIGHBORS_AHEAD = 2,
+  PARTS = 7, /* of what is looked at; with the insertions as many as hosts hand out singly */
+  FEW = 256  /* cells that are not worth waking a thread for */
 };
 
 /* The partners of a vertex that was inserted just now. */
@@ -74,6 +78,31 @@ static int is_due(const mlim_refinement* r, const mlim_queue_entry* entry, mlim_
            mlim_criteria_may_insert(&r->complex, r->options, facet, badness));
 }
 
+/* What insertions begin with, on its way while those before them are at work. */
+static void ask_ahead(const turn* t)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  const mlim_queue_bin* batch = &t->refinement->queue.batch;
+  const size_t left = batch->count - t->next;
+  const mlim_queue_entry* next = batch->entries + t->next;
+  if (left > RECORDS_AHEAD)
+  {
+    mlim_prefetch(&complex->facets[next[RECORDS_AHEAD].record]);
+  }
+  if (left > CELLS_AHEAD)
+  {
+    const mlim_facet* facet = &complex->facets[next[CELLS_AHEAD].record];
+    mlim_prefetch(&complex->cells[facet->cell]);
+    mlim_field_ahead(complex->oracle.field, facet->crossing, 0);
+  }
+  if (left > NEIGHBORS_AHEAD)
+  {
+    const mlim_facet* facet = &complex->facets[next[NEIGHBORS_AHEAD].record];
+    mlim_ahead_of_neighbor(complex, facet->cell, facet->index);
+    mlim_field_ahead(complex->oracle.field, facet->crossing, 1);
+  }
+}
+
 static void insert_some(turn* t)
 {
   mlim_refinement* r = t->refinement;
@@ -83,6 +112,7 @@ static void insert_some(turn* t)
        ++t->next)
   {
     const mlim_queue_entry entry = r->queue.batch.entries[t->next];
+    ask_ahead(t);
     if (is_due(r, &entry, t->badness))
     {
       t->status = insert_crossing(r, entry.record, t->context);
