@@ -27,7 +27,7 @@ order='
 4 curves        network grow curve_face curve_cell crease clean corner curves
 5 balls         pieces radius_map span balls
 5 triangulation power_sphere predicates delaunay
-6 criteria      complex dual ahead boundary records sides wedge criteria disk
+6 criteria      complex dual clear ahead boundary records sides wedge criteria disk
 7 refinement    queue nearby seeds bends partner refine tidy pinch spots zone box cells
 8 products      volumes edges skin nearest mesh quality unresolved certificate
 9 whole         verify volume build

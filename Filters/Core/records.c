@@ -1,5 +1,6 @@
 #include "records.h"
 
+#include "clear.h"
 #include "memory.h"
 #include "status.h"
 #include "vector.h"
@@ -237,7 +238,7 @@ static neighbor look_beyond(const looking* l, int32_t beyond)
 }
 
 /* Whether the dual between two cells stays where the field is uniform, as most between cells of one label do:
-   round each end lies a cube of its label, and the two cover the dual together. */
+   round each end lies a cube of its label, or a box, and the two cover the dual together. */
 static int is_clear(const mlim_records* records, const mlim_new_cell* own, const neighbor* beyond)
 {
   const double* inverse = mlim_field_grid_of(records->oracle->field)->inverse_spacing;
@@ -246,7 +247,10 @@ static int is_clear(const mlim_records* records, const mlim_new_cell* own, const
   {
     longest = mlim_max(longest, fabs(own->center[k] - beyond->center[k]) * inverse[k]);
   }
-  return longest * MLIM_CLEARANCE_PARTS <= own->clearance + beyond->clearance;
+  return longest * MLIM_CLEARANCE_PARTS <= own->clearance + beyond->clearance ||
+         mlim_clear_between(records->oracle->field,
+           (const double* const[2]){ own->center, beyond->center },
+           (const uint16_t[2]){ own->clearance, beyond->clearance });
 }
 
 static void copy_dual(const mlim_new_cell* own, int index, const neighbor* beyond, mlim_dual* out)
