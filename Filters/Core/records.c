@@ -11,6 +11,7 @@
 enum
 {
   FACETS = 4,   /* of a cell */
+  SIDES = 32,   /* cells whose facets are looked at together */
   LOOKS = 64,   /* that wait for memory together */
   BATCH = 4096, /* cells taken down at a time when all are brought up to date, about 3 ms */
   SHARED =
@@ -176,13 +177,6 @@ static void label_all(const mlim_records* records, size_t begin, size_t end)
 
 /* ---- facets ---- */
 
-/* A single crossing of the sheet between the two labels is on the dual as long as its ends have them. */
-static int matches(const mlim_facet* facet, int32_t a, int32_t b)
-{
-  return !facet->is_multiple && a != b && facet->sheet.low == (a < b ? a : b) &&
-         facet->sheet.high == (a < b ? b : a);
-}
-
 typedef struct looking
 {
   mlim_records* records;
@@ -190,71 +184,105 @@ typedef struct looking
   mlim_duals found;
 } looking;
 
-/* What is beyond a facet. */
-typedef struct neighbor
+/* A facet, between a new cell and what is beyond it. */
+typedef struct side
 {
-  const double* center;
-  int32_t id;
-  int32_t label;
-  uint16_t clearance;
-  int is_new;
-} neighbor;
+  const mlim_new_cell* own;
+  const mlim_old_cell* beyond;
+  int32_t index;
+  int32_t is_open;
+} side;
 
 /* In place of waiting for those who label it, if they ever do. */
-static void look_twice(const looking* l, neighbor* out)
+static const mlim_old_cell* look_twice(
+  const looking* l, const mlim_old_cell* beyond, mlim_old_cell* out)
 {
-  mlim_field_look look = { .point = out->center };
+  mlim_field_look look = { .point = beyond->center };
   mlim_field_look_at(l->records->oracle->field, &look, 1);
+  mlim_copy(beyond->center, out->center);
+  out->id = beyond->id;
   out->label = look.label;
   out->clearance = narrow(look.clearance);
-  out->is_new = 1;
-}
-
-static neighbor look_beyond(const looking* l, int32_t beyond)
-{
-  neighbor out;
-  if (beyond < 0)
-  {
-    const mlim_old_cell* c = &l->records->old_cells[-1 - beyond];
-    out =
-      (neighbor){ .center = c->center, .id = c->id, .label = c->label, .clearance = c->clearance };
-    if (c->label == MLIM_NO_LABEL)
-    {
-      look_twice(l, &out);
-    }
-    return out;
-  }
-  const mlim_new_cell* c = &l->records->cells[beyond];
-  out = (neighbor){ .center = c->center, .id = c->id };
-  if ((size_t)beyond >= l->end)
-  {
-    look_twice(l, &out);
-    return out;
-  }
-  out.label = c->label;
-  out.clearance = c->clearance;
-  out.is_new = 1;
   return out;
 }
 
-/* Whether the dual between two cells stays where the field is uniform, as most between cells of one label do:
-   round each end lies a cube of its label, or a box, and the two cover the dual together. */
-static int is_clear(const mlim_records* records, const mlim_new_cell* own, const neighbor* beyond)
+/* Those facets of some new cells that are looked at from there, whose records are asked for. Here and below: without
+   branches, which would go either way. */
+static size_t list_sides(
+  const mlim_records* records, const mlim_new_cell* cells, size_t count, side* out)
 {
-  const double* inverse = mlim_field_grid_of(records->oracle->field)->inverse_spacing;
+  size_t found = 0;
+  for (size_t k = 0; k < count; ++k)
+  {
+    for (int i = 0; i < FACETS; ++i)
+    {
+      mlim_prefetch(&records->facets[cells[k].facets[i]]);
+      out[found].own = &cells[k];
+      out[found].index = i;
+      found += cells[k].beyond[i] != INT32_MAX;
+    }
+  }
+  return found;
+}
+
+/* A single crossing of the sheet between the two labels is on the dual as long as its ends have them. */
+static int matches(const mlim_facet* facet, int32_t a, int32_t b)
+{
+  const int32_t low = a < b ? a : b;
+  const int32_t high = a < b ? b : a;
+  return (!facet->is_multiple) & (low != high) & (facet->sheet.low == low) &
+         (facet->sheet.high == high);
+}
+
+/* Whether the dual between two cells stays in two cubes of their label round its ends. */
+static int is_near(
+  const mlim_field_grid* grid, const mlim_new_cell* own, const mlim_old_cell* beyond)
+{
   double longest = 0;
   for (int k = 0; k < 3; ++k)
   {
-    longest = mlim_max(longest, fabs(own->center[k] - beyond->center[k]) * inverse[k]);
+    longest =
+      mlim_max(longest, fabs(own->center[k] - beyond->center[k]) * grid->inverse_spacing[k]);
   }
-  return longest * MLIM_CLEARANCE_PARTS <= own->clearance + beyond->clearance ||
-         mlim_clear_between(records->oracle->field,
-           (const double* const[2]){ own->center, beyond->center },
-           (const uint16_t[2]){ own->clearance, beyond->clearance });
+  return longest * MLIM_CLEARANCE_PARTS <= own->clearance + beyond->clearance;
 }
 
-static void copy_dual(const mlim_new_cell* own, int index, const neighbor* beyond, mlim_dual* out)
+/* Keeps those whose duals may cross, or contradict a record. A dual may be part of one that was looked at before:
+   there was no crossing, or its record says which. */
+static size_t keep_sides(const looking* l, side* sides, size_t count, mlim_old_cell* twice)
 {
+  const mlim_records* records = l->records;
+  const mlim_field_grid* grid = mlim_field_grid_of(records->oracle->field);
+  size_t kept = 0;
+  for (size_t k = 0; k < count; ++k)
+  {
+    const mlim_new_cell* own = sides[k].own;
+    const int index = sides[k].index;
+    const int32_t place = own->beyond[index];
+    int is_new = place >= 0;
+    const mlim_old_cell* beyond =
+      is_new ? &records->cells[place].seen : &records->old_cells[-1 - place];
+    if (place >= (int32_t)l->end || beyond->label == MLIM_NO_LABEL)
+    {
+      beyond = look_twice(l, beyond, &twice[k]);
+      is_new = 1;
+    }
+    const int32_t record = own->facets[index];
+    const mlim_facet* facet = &records->facets[record]; /* record 0 is empty */
+    const int differs = own->label != beyond->label;
+    const int may_cross = facet->is_multiple | (is_new & (record == 0));
+    const int is_open = differs | (may_cross & !is_near(grid, own, beyond));
+    sides[kept] = (side){ .own = own, .beyond = beyond, .index = index, .is_open = is_open };
+    kept += (size_t)((is_open | (record != 0)) & !matches(facet, own->label, beyond->label));
+  }
+  return kept;
+}
+
+static void copy_dual(const side* from, mlim_dual* out)
+{
+  const mlim_new_cell* own = from->own;
+  const mlim_old_cell* beyond = from->beyond;
+  const int index = from->index;
   const int32_t* v = own->vertices;
   const int is_odd = index & 1;
   *out = (mlim_dual){ .cells = { own->id, beyond->id },
@@ -264,36 +292,39 @@ static void copy_dual(const mlim_new_cell* own, int index, const neighbor* beyon
     .clearances = { (float)own->clearance / MLIM_CLEARANCE_PARTS,
       (float)beyond->clearance / MLIM_CLEARANCE_PARTS },
     .stale = own->facets[index],
-    .index = (unsigned char)index };
+    .index = (unsigned char)index,
+    .is_open = (unsigned char)from->is_open };
   mlim_copy(own->center, out->ends[0]);
   mlim_copy(beyond->center, out->ends[1]);
 }
 
-/* A facet of a new cell. Its dual may be part of one that was looked at before: there was no crossing, or its
-   record says which. */
-static void look_at_facet(looking* l, const mlim_new_cell* own, int index)
+static void copy_sides(looking* l, side* sides, size_t count)
 {
-  const mlim_records* records = l->records;
-  if (own->beyond[index] == INT32_MAX)
+  const mlim_field* field = l->records->oracle->field;
+  for (size_t k = 0; k < count; ++k)
   {
-    return;
+    side* s = &sides[k];
+    if (s->own->label == s->beyond->label && s->is_open)
+    {
+      s->is_open =
+        !mlim_clear_between(field, (const double* const[2]){ s->own->center, s->beyond->center },
+          (const uint16_t[2]){ s->own->clearance, s->beyond->clearance });
+    }
+    copy_dual(s, &l->found.all[l->found.count]);
+    l->found.count += s->is_open || s->own->facets[s->index] > 0;
   }
-  const neighbor beyond = look_beyond(l, own->beyond[index]);
-  const int differs = own->label != beyond.label;
-  const mlim_facet* facet = own->facets[index] > 0 ? &records->facets[own->facets[index]] : NULL;
-  if (facet != NULL && matches(facet, own->label, beyond.label))
+}
+
+static void look_at_sides(looking* l, size_t begin, size_t end)
+{
+  side sides[FACETS * SIDES];
+  mlim_old_cell twice[FACETS * SIDES];
+  for (size_t k = begin; k < end; k += SIDES)
   {
-    return;
+    const size_t some = end - k < SIDES ? end - k : SIDES;
+    const size_t count = list_sides(l->records, &l->records->cells[k], some, sides);
+    copy_sides(l, sides, keep_sides(l, sides, count, twice));
   }
-  const int may_cross = facet == NULL ? beyond.is_new : facet->is_multiple;
-  const int is_open = differs || (may_cross && !is_clear(records, own, &beyond));
-  if (!is_open && facet == NULL)
-  {
-    return;
-  }
-  mlim_dual* dual = &l->found.all[l->found.count++];
-  copy_dual(own, index, &beyond, dual);
-  dual->is_open = (unsigned char)is_open;
 }
 
 /* Of the duals that were looked along those stay that cross, or contradict a record. */
@@ -321,13 +352,7 @@ static void look_at_part(const looking* range, size_t part)
   mlim_records* records = range->records;
   looking l = *range;
   l.found.all = records->duals + FACETS * begin_of(records, part);
-  for (size_t k = begin_of(records, part); k < begin_of(records, part + 1); ++k)
-  {
-    for (int i = 0; i < FACETS; ++i)
-    {
-      look_at_facet(&l, &records->cells[k], i);
-    }
-  }
+  look_at_sides(&l, begin_of(records, part), begin_of(records, part + 1));
   mlim_duals_cross(records->oracle, records->vertices, l.found.all, l.found.count);
   keep_found(&l.found);
   records->dual_counts[part] = (uint32_t)l.found.count;

@@ -26,13 +26,20 @@ typedef struct mlim_old_cell
 
 typedef struct mlim_new_cell
 {
-  double center[3];
-  int32_t id;
+  union
+  {
+    mlim_old_cell seen; /* by its neighbours */
+    struct
+    {
+      double center[3];
+      int32_t id;
+      int32_t label;
+      uint16_t clearance;
+    };
+  };
   int32_t vertices[4], facets[4];
   int32_t
     beyond[4]; /* new cell k: k; old cell k: -1 - k; INT32_MAX: nothing, or looked at from there */
-  int32_t label;
-  uint16_t clearance;
 } mlim_new_cell;
 
 /* What is on its way. All 0 to begin with. */
