@@ -18,7 +18,7 @@ fail() {
 # first one: field_build to field.
 order='
 0 base          mlim vector faces triangle cubic tie
-1 services      memory status
+1 services      memory status team
 2 pieces        scalars label_map distance kernel morphology diffusion indicators samples peaks
 2 pieces        label_sets point_grid
 2 solid         shape solid climb exchange slivers

@@ -14,10 +14,10 @@ enum
   SIDES = 32,   /* cells whose facets are looked at together */
   LOOKS = 64,   /* that wait for memory together */
   BATCH = 4096, /* cells taken down at a time when all are brought up to date, about 3 ms */
-  SHARED =
-    2048, /* cells that are taken down by several threads: fewer are in the cache of the one that made them */
-  FEW = 256, /* cells that are not worth waking a thread for */
-  TAKEN = -2 /* label of the first cell that was taken down; those of others follow below */
+  FEW = 256,    /* cells that are not worth waking a thread for */
+  PARTS = 12,   /* of what threads that are awake look at, */
+  PART = 32,    /* and cells of such a part at least */
+  TAKEN = -2    /* label of the first cell that was taken down; those of others follow below */
 };
 
 void mlim_records_free(mlim_records* records)
@@ -84,21 +84,6 @@ static void take_around(mlim_records* records, const mlim_complex* complex, size
   }
 }
 
-typedef struct taking
-{
-  mlim_records* records;
-  const mlim_complex* complex;
-} taking;
-
-static void take_body(void* data, size_t begin, size_t end)
-{
-  const taking* t = (const taking*)data;
-  for (size_t k = begin; k < end; ++k)
-  {
-    take_around(t->records, t->complex, k);
-  }
-}
-
 static int reserve(mlim_records* records, size_t count)
 {
   return mlim_reserve(
@@ -107,43 +92,67 @@ static int reserve(mlim_records* records, size_t count)
            &records->old_cells, &records->old_capacity, FACETS * count, sizeof *records->old_cells);
 }
 
-static mlim_status take(mlim_records* records, mlim_complex* complex, const int32_t* made,
-  size_t count, size_t parts, mlim_context* context)
-{
-  if (mlim_reserve(&records->cells, &records->cell_capacity, count, sizeof *records->cells))
-  {
-    return mlim_fail_memory(context, "the restricted facets");
-  }
-  take_cells(records, complex, made, count);
-  records->part_count = parts;
-  if (reserve(records, records->cell_count))
-  {
-    return mlim_fail_memory(context, "the restricted facets");
-  }
-  mlim_parallel_for(records->cell_count > SHARED ? context : NULL, records->cell_count, take_body,
-    &(taking){ .records = records, .complex = complex });
-  records->is_pending = records->cell_count > 0;
-  records->oracle = &complex->oracle;
-  records->vertices = complex->vertices;
-  records->facets = complex->facets;
-  return MLIM_OK;
-}
-
-mlim_status mlim_records_take(
-  mlim_records* records, mlim_complex* complex, size_t parts, mlim_context* context)
-{
-  const mlim_status status =
-    take(records, complex, complex->made, complex->made_count, parts, context);
-  complex->made_count = 0;
-  return status;
-}
-
-/* ---- labels ---- */
-
 static size_t begin_of(const mlim_records* records, size_t part)
 {
   return records->cell_count * part / records->part_count;
 }
+
+static void take_part(void* data, size_t part)
+{
+  mlim_records* records = (mlim_records*)data;
+  for (size_t k = begin_of(records, part); k < begin_of(records, part + 1); ++k)
+  {
+    take_around(records, records->complex, k);
+  }
+}
+
+static void take_body(void* data, size_t begin, size_t end)
+{
+  for (size_t part = begin; part < end; ++part)
+  {
+    take_part(data, part);
+  }
+}
+
+/* Room for what is round the cells. */
+static mlim_status take(mlim_records* records, mlim_complex* complex, const int32_t* made,
+  size_t count, mlim_context* context)
+{
+  int has_failed =
+    mlim_reserve(&records->cells, &records->cell_capacity, count, sizeof *records->cells);
+  if (!has_failed)
+  {
+    take_cells(records, complex, made, count);
+    has_failed = reserve(records, records->cell_count);
+  }
+  records->is_pending = !has_failed && records->cell_count > 0;
+  records->complex = complex;
+  records->oracle = &complex->oracle;
+  records->vertices = complex->vertices;
+  records->facets = complex->facets;
+  return has_failed ? mlim_fail_memory(context, "the restricted facets") : MLIM_OK;
+}
+
+mlim_status mlim_records_take(
+  mlim_records* records, mlim_complex* complex, mlim_team* team, mlim_context* context)
+{
+  const mlim_status status = take(records, complex, complex->made, complex->made_count, context);
+  const size_t most = mlim_team_is_alone(team) ? 1 : PARTS;
+  const size_t parts = 1 + records->cell_count / PART;
+  complex->made_count = 0;
+  if (status == MLIM_OK)
+  {
+    records->part_count = parts < most ? parts : most;
+    mlim_team_offer(team, &(mlim_team_work){ .body = take_part,
+                            .job = records,
+                            .count = records->part_count,
+                            .second = records->part_count });
+    mlim_team_finish(team);
+  }
+  return status;
+}
+
+/* ---- labels ---- */
 
 /* Rounded down: less is only looked at more closely. */
 static uint16_t narrow(float clearance)
@@ -167,11 +176,12 @@ static void label_some(const mlim_records* records, mlim_new_cell* cells, size_t
   }
 }
 
-static void label_all(const mlim_records* records, size_t begin, size_t end)
+void mlim_records_label(mlim_records* records, size_t begin, size_t end)
 {
-  for (size_t k = begin; k < end; k += LOOKS)
+  const size_t last = begin_of(records, end);
+  for (size_t k = begin_of(records, begin); k < last; k += LOOKS)
   {
-    label_some(records, &records->cells[k], end - k < LOOKS ? end - k : LOOKS);
+    label_some(records, &records->cells[k], last - k < LOOKS ? last - k : LOOKS);
   }
 }
 
@@ -358,10 +368,9 @@ static void look_at_part(const looking* range, size_t part)
   records->dual_counts[part] = (uint32_t)l.found.count;
 }
 
-void mlim_records_look(mlim_records* records, size_t begin, size_t end)
+void mlim_records_look(mlim_records* records, size_t begin, size_t end, size_t labelled)
 {
-  const looking range = { .records = records, .end = begin_of(records, end) };
-  label_all(records, begin_of(records, begin), range.end);
+  const looking range = { .records = records, .end = begin_of(records, labelled) };
   for (size_t part = begin; part < end; ++part)
   {
     look_at_part(&range, part);
@@ -516,7 +525,9 @@ mlim_status mlim_records_settle(mlim_records* records, mlim_complex* complex, ml
 
 static void look_body(void* data, size_t begin, size_t end)
 {
-  mlim_records_look((mlim_records*)data, begin, end);
+  mlim_records* records = (mlim_records*)data;
+  mlim_records_label(records, begin, end);
+  mlim_records_look(records, begin, end, end);
 }
 
 /* Returns 1 when out of memory. */
@@ -542,14 +553,15 @@ static int list_fresh(const mlim_records* records, mlim_complex* complex)
 static mlim_status update_some(mlim_records* records, mlim_complex* complex, const int32_t* made,
   size_t count, mlim_context* context)
 {
-  const int is_shared = count > FEW;
-  mlim_status status =
-    take(records, complex, made, count, is_shared ? MLIM_RECORD_PARTS : 1, context);
+  mlim_context* host = count > FEW ? context : NULL;
+  mlim_status status = take(records, complex, made, count, context);
   if (status != MLIM_OK)
   {
     return status;
   }
-  mlim_parallel_for(is_shared ? context : NULL, records->part_count, look_body, records);
+  records->part_count = host != NULL ? MLIM_RECORD_PARTS : 1;
+  mlim_parallel_for(host, records->part_count, take_body, records);
+  mlim_parallel_for(host, records->part_count, look_body, records);
   status = mlim_records_settle(records, complex, context);
   return status == MLIM_OK && list_fresh(records, complex)
            ? mlim_fail_memory(context, "the restricted facets")

@@ -9,6 +9,7 @@
 #define mlim_records_h
 
 #include "dual.h"
+#include "team.h"
 
 enum
 {
@@ -54,20 +55,24 @@ typedef struct mlim_records
   size_t dual_capacity;
   size_t part_count;
   uint32_t dual_counts[MLIM_RECORD_PARTS];
-  const mlim_oracle* oracle;   /* borrowed of the complex */
+  const mlim_complex* complex; /* borrowed */
+  const mlim_oracle* oracle;   /* of the complex, which is not asked for them beside insertions */
   const mlim_vertex* vertices; /* the same */
   const mlim_facet* facets;    /* the same */
 } mlim_records;
 
 void mlim_records_free(mlim_records* records);
 
-/* Takes down the cells made since the last time, to be looked at in so many parts. Nothing may be on its way. */
+/* Takes down the cells made since the last time, to be looked at in parts, more of them if the team has others to
+   do so. Nothing may be on its way. */
 mlim_status mlim_records_take(
-  mlim_records* records, mlim_complex* complex, size_t parts, mlim_context* context);
+  mlim_records* records, mlim_complex* complex, mlim_team* team, mlim_context* context);
 
-/* Labels parts `begin` to `end` of what is on its way and looks along their duals. Parts may be looked at at the
-   same time, and beside insertions into the complex as long as no vertex moves. */
-void mlim_records_look(mlim_records* records, size_t begin, size_t end);
+/* Labels parts `begin` to `end` of what is on its way; looks along their duals, parts up to `labelled` having their
+   labels. Parts may be looked at at the same time, and beside insertions into the complex as long as no vertex
+   moves. */
+void mlim_records_label(mlim_records* records, size_t begin, size_t end);
+void mlim_records_look(mlim_records* records, size_t begin, size_t end, size_t labelled);
 
 /* The duals of a part that has been looked at: those that cross, or contradict a record. */
 typedef struct mlim_duals

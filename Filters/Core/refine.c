@@ -166,22 +166,15 @@ mlim_status mlim_refine_go_on(mlim_refinement* refinement, mlim_context* context
   /* Each round inserts at least one point or is the last, and the vertex limit bounds the points. */
   while (status == MLIM_OK)
   {
-    const int bin = mlim_queue_next(&r->queue);
-    if (bin >= 0)
-    {
-      status = mlim_batch_work(r, mlim_queue_badness_of(bin), context);
-    }
-    else if (r->complex.dirty_count > 0)
-    {
-      status = mlim_disks_check(r, context);
-    }
-    else
+    status = mlim_batches_work(r, context);
+    if (status == MLIM_OK && r->complex.dirty_count == 0)
     {
       /* What follows needs the room. */
       mlim_queue_shrink(&r->queue);
       mlim_records_free(&r->records);
       break;
     }
+    status = status == MLIM_OK ? mlim_disks_check(r, context) : status;
   }
   return status == MLIM_OK ? mlim_refine_report(r, context) : status;
 }

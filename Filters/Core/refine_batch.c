@@ -13,8 +13,8 @@ enum
   RECORDS_AHEAD = 6, /* entries of the batch to the one whose record is asked for */
   CELLS_AHEAD = 4,   /* and to those whose cell is, and the one beyond */
   NEIGHBORS_AHEAD = 2,
-  PARTS = 7, /* of what is looked at; with the insertions as many as hosts hand out singly */
-  FEW = 256  /* cells that are not worth waking a thread for */
+  TURNS = 512,  /* between two looks at the host, */
+  CELLS = 36864 /* and cells, about 20 ms */
 };
 
 /* The partners of a vertex that was inserted just now. */
@@ -59,12 +59,14 @@ static mlim_status insert_crossing(mlim_refinement* r, int32_t record, mlim_cont
   return status == MLIM_OK ? insert_partners(r, &partners, context) : status;
 }
 
-/* Insertions and, beside them, the duals that those before have left. */
+/* Facets get their points, batch after batch, and beside the insertions the duals that those before have left are
+   looked along. */
 typedef struct turn
 {
   mlim_refinement* refinement;
   mlim_badness badness;
   size_t next; /* entry of the batch */
+  int is_over; /* the queue is empty, and nothing is on its way */
   mlim_context* context;
   mlim_status status;
 } turn;
@@ -120,56 +122,83 @@ static void insert_some(turn* t)
   }
 }
 
-/* Item 0 inserts, the others look at what those before have left: what one changes, no other reads. A thread that has
-   both looks first, as long as the cells are in its cache. */
-static void turn_body(void* data, size_t begin, size_t end)
+/* What one part changes no other reads, nor do insertions. */
+static void look(void* data, size_t item)
 {
-  turn* t = (turn*)data;
-  const size_t first = begin == 0 ? 0 : begin - 1;
-  if (end > first + 1)
+  mlim_refinement* r = (mlim_refinement*)data;
+  const size_t parts = r->records.part_count;
+  if (item < parts)
   {
-    mlim_records_look(&t->refinement->records, first, end - 1);
+    mlim_records_label(&r->records, item, item + 1);
+    return;
   }
-  for (size_t part = first; part + 1 < end; ++part)
-  {
-    mlim_judge_duals(t->refinement, part);
-  }
-  if (begin == 0)
-  {
-    insert_some(t);
-  }
+  mlim_records_look(&r->records, item - parts, item - parts + 1, parts);
+  mlim_judge_duals(r, item - parts);
 }
 
 /* Records and queues what was found. */
 static mlim_status settle(mlim_refinement* r, mlim_context* context)
 {
+  const int is_pending = r->records.is_pending;
   const mlim_status status = mlim_records_settle(&r->records, &r->complex, context);
-  return status == MLIM_OK ? mlim_judge_settled(r, context) : status;
+  return status == MLIM_OK && is_pending ? mlim_judge_settled(r, context) : status;
 }
 
-static mlim_status take_turn(turn* t)
+static mlim_status take_turn(turn* t, mlim_team* team)
 {
   mlim_refinement* r = t->refinement;
-  mlim_complex* complex = &r->complex;
-  const int is_shared = r->records.is_pending && r->records.cell_count > FEW;
-  const size_t parts = r->records.is_pending ? PARTS : 0;
-  mlim_parallel_for(is_shared ? t->context : NULL, 1 + parts, turn_body, t);
-  mlim_status status = parts > 0 ? settle(r, t->context) : mlim_refine_report(r, t->context);
+  const size_t parts = r->records.is_pending ? r->records.part_count : 0;
+  mlim_team_offer(
+    team, &(mlim_team_work){ .body = look, .job = r, .count = 2 * parts, .second = parts });
+  if (mlim_team_is_alone(team))
+  {
+    mlim_team_finish(team); /* as long as the cells are in the cache */
+  }
+  insert_some(t);
+  mlim_team_finish(team);
+  mlim_status status = settle(r, t->context);
   status = t->status == MLIM_OK ? status : t->status;
   /* Insertions leave the vertices where they are when they are looked at. */
-  status = status == MLIM_OK ? mlim_complex_reserve(complex, VERTICES, t->context) : status;
-  return status == MLIM_OK ? mlim_records_take(&r->records, complex, PARTS, t->context) : status;
+  status = status == MLIM_OK ? mlim_complex_reserve(&r->complex, VERTICES, t->context) : status;
+  return status == MLIM_OK ? mlim_records_take(&r->records, &r->complex, team, t->context) : status;
 }
 
-mlim_status mlim_batch_work(
-  mlim_refinement* refinement, mlim_badness badness, mlim_context* context)
+/* Whether there is one more. */
+static int next_batch(turn* t)
 {
-  mlim_refinement* r = refinement;
-  turn t = { .refinement = r, .badness = badness, .context = context };
-  mlim_status status = mlim_judge_fresh(r, context);
-  while ((t.next < r->queue.batch.count || r->records.is_pending) && status == MLIM_OK)
+  const int bin = mlim_queue_next(&t->refinement->queue);
+  t->badness = mlim_queue_badness_of(bin);
+  t->next = 0;
+  t->is_over = bin < 0;
+  return bin >= 0;
+}
+
+/* As much as a host can wait for. */
+static void take_turns(void* data, mlim_team* team)
+{
+  turn* t = (turn*)data;
+  const mlim_refinement* r = t->refinement;
+  size_t cells = 0;
+  for (size_t turns = 0; turns < TURNS && cells < CELLS && !t->is_over && t->status == MLIM_OK;
+       ++turns)
   {
-    status = take_turn(&t);
+    if (t->next < r->queue.batch.count || r->records.is_pending || next_batch(t))
+    {
+      t->status = take_turn(t, team);
+      cells += r->records.cell_count;
+    }
+  }
+}
+
+mlim_status mlim_batches_work(mlim_refinement* refinement, mlim_context* context)
+{
+  turn t = { .refinement = refinement, .context = context };
+  next_batch(&t);
+  mlim_status status = t.is_over ? MLIM_OK : mlim_judge_fresh(refinement, context);
+  while (!t.is_over && status == MLIM_OK)
+  {
+    mlim_team_run(context, take_turns, &t);
+    status = t.status == MLIM_OK ? mlim_refine_report(refinement, context) : t.status;
   }
   return status;
 }

@@ -142,5 +142,5 @@ mlim_status mlim_judge_settled(mlim_refinement* refinement, mlim_context* contex
       }
     }
   }
-  return mlim_refine_report(r, context);
+  return MLIM_OK;
 }
