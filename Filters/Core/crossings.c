@@ -133,11 +133,11 @@ static void cross_edges(batch* b)
 }
 
 /* Grid points of a row, and how far it is from each to the next one along each axis; 0 where there is none. */
-typedef struct row
+typedef struct grid_row
 {
   const uint16_t* labels;
   size_t steps[3];
-} row;
+} grid_row;
 
 /* Whether an edge that begins at one of some points has two labels. Without branches, so that compilers take
    many points at a time. */
@@ -152,7 +152,7 @@ static int has_change(const uint16_t* labels, const size_t steps[3])
   return changes != 0;
 }
 
-static void add_edges(batch* b, const row* row, const int32_t point[3])
+static void add_edges(batch* b, const grid_row* row, const int32_t point[3])
 {
   const uint16_t* label = row->labels + point[0];
   for (int axis = 0; axis < 3; ++axis)
@@ -169,7 +169,7 @@ static void add_edges(batch* b, const row* row, const int32_t point[3])
   }
 }
 
-static void cross_row(batch* b, row* row, int32_t y, int32_t z)
+static void cross_row(batch* b, grid_row* row, int32_t y, int32_t z)
 {
   const int32_t count = mlim_field_grid_of(b->oracle->field)->dims[0];
   for (int32_t begin = 0; begin < count; begin += POINTS)
@@ -197,7 +197,7 @@ void mlim_crossings_of_slice(
   batch b = { .oracle = oracle, .visit = visit, .user = user };
   for (int32_t y = 0; y < dims[1]; ++y)
   {
-    row row = { .labels = labels + width * (size_t)y,
+    grid_row row = { .labels = labels + width * (size_t)y,
       .steps = { 1, y + 1 < dims[1] ? width : 0, z + 1 < dims[2] ? slice : 0 } };
     cross_row(&b, &row, y, z);
   }
