@@ -187,6 +187,38 @@ static void gather_vertices(tidier* t)
   }
 }
 
+/* Whether the part, once its label is none of its neighbours' round a vertex, is an island there: the rest of the
+   star has triangles too, so that the link falls apart. Seen without gathering the star, so not always. */
+static int is_island(const tidier* t, int32_t vertex)
+{
+  const mlim_complex* complex = &t->refinement->complex;
+  int has_more = 0;
+  for (size_t p = 0; p < t->part_count; ++p)
+  {
+    const mlim_cell* cell = &complex->cells[t->part[p]];
+    const int is_there = contains(cell->vertices, 4, vertex);
+    for (int k = 0; k < 4 && is_there; ++k)
+    {
+      const int32_t id = cell->neighbors[k];
+      const mlim_cell* other = &complex->cells[id];
+      if (cell->vertices[k] == vertex || contains(t->part, t->part_count, id))
+      {
+        continue;
+      }
+      if (other->label == cell->label)
+      {
+        return 0;
+      }
+      for (int i = 0; i < 4 && !has_more; ++i)
+      {
+        has_more = other->vertices[i] != vertex && t->looks.boundary->sides[id] >> i & 1 &&
+                   !contains(t->part, t->part_count, other->neighbors[i]);
+      }
+    }
+  }
+  return has_more && complex->vertices[vertex].ball < 0;
+}
+
 /* A failed disk weighs more than bad triangles, these more than triangles with a wrong side, and all
    more than strays: the latter only lie a little off their sheet. */
 enum
@@ -201,6 +233,7 @@ enum
 static long cost(tidier* t, long enough, int is_trial)
 {
   const mlim_complex* complex = &t->refinement->complex;
+  unsigned char is_counted[4 * MAX_PART] = { 0 };
   long sum = 0;
   for (size_t p = 0; p < t->part_count && sum < enough; ++p)
   {
@@ -208,13 +241,18 @@ static long cost(tidier* t, long enough, int is_trial)
     sum += tidy_cell_strays(complex, id, complex->cells[id].label);
     sum += SHAPE_COST * tidy_cell_misshapen(t->refinement, id);
   }
+  for (size_t k = 0; k < t->vertex_count && sum < enough && is_trial; ++k)
+  {
+    is_counted[k] = (unsigned char)is_island(t, t->vertices[k]);
+    sum += DISK_COST * is_counted[k];
+  }
   for (size_t p = 0; p < t->part_count && sum < enough; ++p)
   {
     sum += SIDE_COST * tidy_sides_unseen(&t->sides, t->part[p]);
   }
   for (size_t k = 0; k < t->vertex_count && sum < enough; ++k)
   {
-    sum += DISK_COST * fails(t, t->vertices[k], is_trial);
+    sum += is_counted[k] ? 0 : DISK_COST * fails(t, t->vertices[k], is_trial);
   }
   return sum;
 }
