@@ -124,7 +124,7 @@ int mlim_sides_are_wide(const mlim_complex* complex, const mlim_facet* facet)
 
 void mlim_sides_judge(const mlim_complex* complex, mlim_sides* sides, size_t count)
 {
-  double points[4 * MLIM_SIDES_TOGETHER][3];
+  double points[4 * MLIM_SIDES_TOGETHER][3] = { { 0 } };
   int32_t labels[4 * MLIM_SIDES_TOGETHER];
   size_t begins[MLIM_SIDES_TOGETHER + 1] = { 0 };
   for (size_t k = 0; k < count; ++k)
