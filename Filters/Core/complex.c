@@ -271,17 +271,6 @@ void mlim_complex_take_new_cell(mlim_complex* complex, int32_t cell)
   complex->made[complex->made_count++] = cell;
 }
 
-/* The record of the facet opposite to the new vertex goes over from the cell outside. */
-static void inherit_record(mlim_complex* complex, int32_t id)
-{
-  mlim_cell* cell = &complex->cells[id];
-  if (cell->neighbors[0] != MLIM_NO_CELL)
-  {
-    const mlim_cell* outside = &complex->cells[cell->neighbors[0]];
-    cell->facets[0] = outside->facets[index_beside(outside, id)];
-  }
-}
-
 mlim_status mlim_complex_expect_cells(mlim_complex* complex, size_t count, mlim_context* context)
 {
   mlim_complex_borrow_cells(complex);
@@ -323,7 +312,6 @@ mlim_status mlim_complex_commit(mlim_complex* complex, mlim_context* context)
   for (size_t k = 0; k < made.count && status == MLIM_OK; ++k)
   {
     mlim_complex_take_new_cell(complex, made.cells[k]);
-    inherit_record(complex, made.cells[k]);
   }
   return status;
 }

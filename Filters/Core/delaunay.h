@@ -62,11 +62,13 @@ typedef struct mlim_cell
   int32_t neighbors[4];   /* neighbour k is opposite to vertex k */
   uint32_t seen;          /* the triangulation's own */
   mlim_power_bound bound; /* of the sphere; also the triangulation's own */
-  /* The client's. All 0 when the cell is made. */
+  /* The client's. All 0 when the cell is made, but facets[0]. */
   uint16_t clearance; /* mlim_field_look at the centre, in parts of MLIM_CLEARANCE_PARTS, or less */
   uint32_t mark;
   int32_t label;
-  int32_t facets[4]; /* record of the facet opposite to vertex k; 0: none */
+  /* Record of the facet opposite to vertex k; 0: none. A cell made by an insertion has that of facet 0, which the
+     cell beyond has too. */
+  int32_t facets[4];
 } mlim_cell;
 
 /* All cells by id, dead ones too. Of its sphere a dead cell has nothing. */

@@ -46,18 +46,20 @@ static void take_ids(mlim_delaunay* d)
   }
 }
 
-/* A cell on each facet of the border, linked to what is outside. */
+/* A cell on each facet of the border, linked to what is outside; what the client knows of the facet is there. */
 static void make_cells(mlim_delaunay* d, int32_t vertex)
 {
   for (size_t k = 0; k < d->border_count; ++k)
   {
     const delaunay_facet* facet = &d->border[k];
     const int32_t* v = facet->vertices;
-    d->cells[d->made[k]] =
-      (mlim_cell){ .vertices = { vertex, v[0], v[1], v[2] }, .neighbors = { facet->outer } };
+    mlim_cell* cell = &d->cells[d->made[k]];
+    *cell = (mlim_cell){ .vertices = { vertex, v[0], v[1], v[2] }, .neighbors = { facet->outer } };
     if (facet->outer != MLIM_NO_CELL)
     {
-      d->cells[facet->outer].neighbors[facet->index] = d->made[k];
+      mlim_cell* outer = &d->cells[facet->outer];
+      outer->neighbors[facet->index] = d->made[k];
+      cell->facets[0] = outer->facets[facet->index];
     }
   }
 }
