@@ -17,6 +17,7 @@ enum
   FEW = 256,    /* cells that are not worth waking a thread for */
   PARTS = 12,   /* of what threads that are awake look at, */
   PART = 32,    /* and cells of such a part at least */
+  AHEAD = 8,    /* things from the one at work to the one that is sent for */
   TAKEN = -2    /* label of the first cell that was taken down; those of others follow below */
 };
 
@@ -386,6 +387,10 @@ static void give_labels(const mlim_records* records, mlim_complex* complex)
   {
     const mlim_new_cell* from = &records->cells[k];
     mlim_cell* cell = &complex->cells[from->id];
+    if (k + AHEAD < records->cell_count)
+    {
+      mlim_prefetch(&complex->cells[from[AHEAD].id]);
+    }
     if (cell->label == TAKEN - (int32_t)k)
     {
       cell->label = from->label;
@@ -514,6 +519,11 @@ mlim_status mlim_records_settle(mlim_records* records, mlim_complex* complex, ml
     const mlim_duals duals = mlim_records_duals(records, p);
     for (size_t k = 0; k < duals.count && !has_failed; ++k)
     {
+      if (k + AHEAD < duals.count)
+      {
+        mlim_prefetch(&complex->cells[duals.all[k + AHEAD].cells[0]]);
+        mlim_prefetch(&complex->cells[duals.all[k + AHEAD].cells[1]]);
+      }
       has_failed = settle_dual(complex, &duals.all[k]);
     }
   }
