@@ -429,16 +429,16 @@ typedef struct place
    gone, the dual shorter. 0: both are gone. */
 static int find_place(const mlim_complex* complex, const mlim_dual* dual, place* out)
 {
-  for (int side = 0; side < 2; ++side)
+  for (int end = 0; end < 2; ++end)
   {
-    const int32_t id = dual->cells[side];
+    const int32_t id = dual->cells[end];
     mlim_cell* cell = &complex->cells[id];
     if (cell->vertices[0] < 0 || cell->label < 0)
     {
       continue;
     }
     int index = dual->index;
-    if (side == 1)
+    if (end == 1)
     {
       const int32_t* v = dual->vertices;
       for (index = 0; index < 3; ++index)
