@@ -136,16 +136,19 @@ static void test_clearance(const mlim_field* field, uint64_t seed)
   };
   double points[COUNT][3];
   mlim_field_look looks[COUNT];
+  int32_t labels[COUNT];
   for (int n = 0; n < COUNT; ++n)
   {
     random_point(&seed, points[n]);
     looks[n].point = points[n];
   }
   mlim_field_look_at(field, looks, COUNT);
+  mlim_field_labels(field, points[0], COUNT, labels);
   for (int n = 0; n < COUNT; ++n)
   {
     const double clearance = (double)looks[n].clearance;
     CHECK(clearance >= 0 && looks[n].label == mlim_field_label(field, points[n]));
+    CHECK(labels[n] == looks[n].label);
     for (int s = 0; s < 20 && clearance > 0; ++s)
     {
       double other[3];
