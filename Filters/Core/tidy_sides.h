@@ -7,8 +7,7 @@
 
 enum
 {
-  TIDY_VIEWS =
-    1 << 13 /* facets that are remembered; a cell that is tried asks for about 16 of them */
+  TIDY_VIEWS = 1 << 11 /* facets remembered; a cell that is tried asks for about 16 */
 };
 
 typedef struct tidy_view
