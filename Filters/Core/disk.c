@@ -115,6 +115,16 @@ static const struct
   { { 0, { 1, 3 } }, { 1, { 0, 3 } }, { 3, { 0, 1 } } },
   { { 0, { 1, 2 } }, { 1, { 0, 2 } }, { 2, { 0, 1 } } } };
 
+/* The cells round one of the star: it is there itself, but they would be waited for when its turn comes. */
+static void ask_round(const mlim_complex* complex, int32_t id)
+{
+  const int32_t* n = complex->cells[id].neighbors;
+  for (int k = 0; k < 4; ++k)
+  {
+    mlim_prefetch(&complex->cells[n[k] == MLIM_NO_CELL ? id : n[k]]);
+  }
+}
+
 /* Each facet of the star is seen from its two cells and taken from the one with the lower id. What is not
    taken is written all the same and written over by the next: branches here would be foretold wrong at
    every other facet, and cost more than all the rest. */
@@ -137,6 +147,7 @@ static void visit_cell(const mlim_complex* complex, int32_t id, int32_t vertex, 
     const mlim_cell* other = &complex->cells[n];
     star->cells[cell_count] = n;
     cell_count += add_seen(star, n);
+    ask_round(complex, n);
     const size_t is_first = id < n;
     star->facets[facet_count] = cell->facets[k];
     facet_count += is_first & (cell->facets[k] != 0);
