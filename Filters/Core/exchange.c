@@ -11,14 +11,6 @@ enum
     10 /* cells round an edge that is exchanged; longer rings rarely have a better filling */
 };
 
-/* What a step has to gain, relative: less is noise, and steps might go round in circles. */
-static const double LEAST_GAIN = 1e-3;
-
-static double least_to_accept(double shape)
-{
-  return shape + LEAST_GAIN * fabs(shape);
-}
-
 static void add_new(mlim_solid_change* change, int32_t a, int32_t b, int32_t c, int32_t d)
 {
   int32_t* v = change->new_cells[change->new_count++];
@@ -189,7 +181,7 @@ int mlim_exchange_edge(mlim_solid* solid, mlim_solid_change* change, int32_t cel
   {
     return 0;
   }
-  const double above = least_to_accept(worst_old(solid, change));
+  const double above = mlim_exchange_least(worst_old(solid, change));
   filling f;
   fill_ring(solid, &r, above, &f);
   if (!(f.best[0][r.count - 1] > above))
@@ -229,7 +221,7 @@ int mlim_exchange_face(mlim_solid* solid, mlim_solid_change* change, int32_t cel
   {
     add_new(change, a, b, face[k], face[(k + 1) % 3]);
   }
-  const double above = least_to_accept(worst_old(solid, change));
+  const double above = mlim_exchange_least(worst_old(solid, change));
   return measure_new(solid, change, above) ? mlim_solid_exchange(solid, change, c->label) : 0;
 }
 
@@ -243,7 +235,7 @@ int mlim_exchange_vertex(mlim_solid* solid, mlim_solid_change* change, int32_t c
     return 0;
   }
   const int32_t label = solid->cells[cell].label;
-  const double above = least_to_accept(worst_old(solid, change));
+  const double above = mlim_exchange_least(worst_old(solid, change));
   /* The neighbours in the cell itself are the likely ones: one of them may be too near. */
   for (int k = 0; k < 4; ++k)
   {

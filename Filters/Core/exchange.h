@@ -7,6 +7,18 @@
 #define mlim_exchange_h
 
 #include "solid.h"
+#include "vector.h"
+
+#include <math.h>
+
+/* What the worst of the new shapes has to come above. Less of a gain is noise, and steps might go round in
+   circles. An old shape may be below 0 though its cell is in order, where that is as thin as rounding errors:
+   no reason to take inverted cells for it. */
+static inline double mlim_exchange_least(double worst)
+{
+  static const double least_gain = 1e-3;
+  return mlim_max(0, worst + least_gain * fabs(worst));
+}
 
 /* Edge `edge` (0 to 5) of a cell gives way to triangles across the ring of its cells. */
 int mlim_exchange_edge(mlim_solid* solid, mlim_solid_change* change, int32_t cell, int edge);

@@ -16,7 +16,6 @@ enum
   MAX_FACES = 2 * MAX_CAVITY + 2
 };
 
-static const double LEAST_GAIN = 1e-3;
 /* A place whose cells are worse than this part of what they have to be is not climbed from. */
 static const double PROMISING_PART = 0.3;
 
@@ -240,12 +239,12 @@ int mlim_exchange_insert(mlim_solid* solid, mlim_solid_change* change, int32_t c
     return -1;
   }
   const double old = solid->cells[cell].shape;
-  double most = old + LEAST_GAIN * fabs(old);
+  double most = mlim_exchange_least(old);
   int best = -1;
   for (int place = 0; place < PLACES_OFF_CENTER + PLACES_IN_CELL && most < 1; ++place)
   {
     const double shape = try_place(solid, change, cell, place, most);
-    if (shape > 0 && shape > most)
+    if (shape > most)
     {
       most = shape;
       best = place;
@@ -276,7 +275,7 @@ int mlim_exchange_star(mlim_solid* solid, mlim_solid_change* change, int32_t cel
   double* point = solid->points + 3 * (size_t)vertex;
   double from[3];
   mlim_copy(point, from);
-  if (prepare(solid, change, &seed, old) > old + LEAST_GAIN * fabs(old))
+  if (prepare(solid, change, &seed, old) > mlim_exchange_least(old))
   {
     const int done = mlim_solid_exchange(solid, change, solid->cells[cell].label);
     if (done != 0)

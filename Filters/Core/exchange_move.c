@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double LEAST_GAIN = 1e-3;
-
 /* The mean of the other vertices of the cells. */
 static void find_mean(
   const mlim_solid* solid, const mlim_solid_change* change, int32_t vertex, double out[3])
@@ -52,7 +50,8 @@ int mlim_exchange_move(mlim_solid* solid, mlim_solid_change* change, int32_t cel
   {
     mlim_copy(from, point);
   }
-  if (!(mlim_climb(solid, change, vertex) > worst + LEAST_GAIN * fabs(worst)))
+  if (!(mlim_climb(solid, change, vertex) > mlim_exchange_least(worst)) ||
+      !mlim_solid_is_positive(solid, change))
   {
     mlim_copy(from, point);
     return 0;

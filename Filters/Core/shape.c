@@ -117,6 +117,18 @@ double mlim_shape_of(const mlim_shape_bound* bound, const double* const p[4])
   return shape < 1 ? shape : 1 + sine;
 }
 
+/* Rounding errors of the volume are below (7 + 56 u) u times the sum of its products' magnitudes, u = 2^-53
+   (Shewchuk, Adaptive precision floating-point arithmetic, 1997), and that sum is at most sqrt(2) times
+   the product of the three edges. This is a little above the square of the two factors. */
+static const double LOST_SQUARED = 1.44e-30;
+
+int mlim_shape_is_positive(const double* const points[4])
+{
+  const corner at = take_corner(points);
+  const double edges = mlim_dot(at.a, at.a) * mlim_dot(at.b, at.b) * mlim_dot(at.c, at.c);
+  return at.volume > 0 && at.volume * at.volume > LOST_SQUARED * edges;
+}
+
 static double angle_between(const pieces* cell, int i, int j)
 {
   static const double degrees = 57.29577951308232;

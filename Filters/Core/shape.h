@@ -15,6 +15,10 @@ typedef struct mlim_shape_bound
    smallest sine of its dihedral angles. */
 double mlim_shape_of(const mlim_shape_bound* bound, const double* const points[4]);
 
+/* Whether the cell of four points is positively oriented beyond all rounding errors. Cells thinner than
+   these are refused whatever they are. */
+int mlim_shape_is_positive(const double* const points[4]);
+
 typedef struct mlim_shape_figures
 {
   double volume;               /* signed */

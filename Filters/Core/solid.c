@@ -91,6 +91,23 @@ int mlim_solid_star(mlim_solid* solid, int32_t cell, int32_t vertex, mlim_solid_
 
 /* ---- exchange ---- */
 
+int mlim_solid_is_positive(const mlim_solid* solid, const mlim_solid_change* change)
+{
+  for (size_t c = 0; c < change->new_count; ++c)
+  {
+    const double* points[4];
+    for (int k = 0; k < 4; ++k)
+    {
+      points[k] = solid->points + 3 * (size_t)change->new_cells[c][k];
+    }
+    if (!mlim_shape_is_positive(points))
+    {
+      return 0;
+    }
+  }
+  return 1;
+}
+
 static void sort_face(const int32_t vertices[4], int index, int32_t out[3])
 {
   int32_t a = vertices[(index + 1) & 3];
@@ -263,7 +280,8 @@ int mlim_solid_exchange(mlim_solid* solid, mlim_solid_change* change, int32_t la
   {
     return -1;
   }
-  if (!match_new(solid, change) || !match_old(solid, change))
+  if (!mlim_solid_is_positive(solid, change) || !match_new(solid, change) ||
+      !match_old(solid, change))
   {
     return 0;
   }

@@ -78,9 +78,12 @@ int mlim_solid_is_open(const mlim_solid* solid, const mlim_solid_cell* cell, int
    they are too many, or the vertex is on the surface after all. */
 int mlim_solid_star(mlim_solid* solid, int32_t cell, int32_t vertex, mlim_solid_change* change);
 
-/* Takes out the old cells and puts in the new ones, all of which get `label`. The new cells are
-   positively oriented and fill the old ones' space. Returns 0, and nothing has changed, when their
-   faces do not fit; -1 when out of memory. */
+/* Whether all new cells are positively oriented (mlim_shape_is_positive). */
+int mlim_solid_is_positive(const mlim_solid* solid, const mlim_solid_change* change);
+
+/* Takes out the old cells and puts in the new ones, all of which get `label`. Returns 0, and nothing has
+   changed, when not all new cells are positively oriented or their faces do not fit; -1 when out of
+   memory. Cells of one orientation whose faces fit fill the old ones' space once. */
 int mlim_solid_exchange(mlim_solid* solid, mlim_solid_change* change, int32_t label);
 
 #endif

@@ -1,6 +1,8 @@
 /* The shape of single cells, and the steps that better a few. */
 #include "check.h"
 #include "exchange.h"
+#include "predicates.h"
+#include "random_field.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -177,10 +179,97 @@ static void test_flips(void)
   free(change);
 }
 
+/* ---- cells as thin as rounding errors ---- */
+
+/* Exactly: not positively oriented, or on the four vertices of another one. */
+static size_t count_wrong(const mlim_solid* solid)
+{
+  size_t count = 0;
+  for (size_t c = 0; c < solid->cell_count; ++c)
+  {
+    const int32_t* v = solid->cells[c].vertices;
+    if (v[0] < 0)
+    {
+      continue;
+    }
+    const double* p = solid->points;
+    int side;
+    CHECK(mlim_predicates_orientation(p + 3 * (size_t)v[0], p + 3 * (size_t)v[1],
+            p + 3 * (size_t)v[2], p + 3 * (size_t)v[3], NULL, &side) == MLIM_OK);
+    count += side <= 0;
+    for (size_t d = 0; d < c; ++d)
+    {
+      const int32_t* w = solid->cells[d].vertices;
+      int same = 0;
+      for (int k = 0; k < 16 && w[0] >= 0; ++k)
+      {
+        same += v[k / 4] == w[k % 4];
+      }
+      count += same == 4;
+    }
+  }
+  return count;
+}
+
+/* Vertices at random places, off a plane askew to the axes by up to `height`; two of the triangle's are about
+   as close together, and if `is_narrow` LOW and HIGH are, too. */
+static void place(mlim_solid* solid, double height, int is_narrow, uint64_t* seed)
+{
+  for (int v = 0; v < COUNT; ++v)
+  {
+    double* p = solid->points + 3 * v;
+    const double a = random_unit(seed);
+    const double b = random_unit(seed);
+    p[0] = a + b / 3;
+    p[1] = b - a / 7;
+    p[2] = 0.7 * a + 0.3 * b + height * random_unit(seed);
+    if (v == FIRST + 1 || (v == HIGH && is_narrow))
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        p[k] = p[k - 3] + height * (random_unit(seed) - 0.5);
+      }
+    }
+  }
+  for (size_t c = 0; c < solid->cell_count; ++c)
+  {
+    solid->cells[c].shape = mlim_solid_shape(solid, solid->cells[c].vertices);
+  }
+}
+
+/* A positively oriented cell may get a shape that is not above 0, and one that is not may get a larger one.
+   Whatever takes the place of cells that are in order is so, too. */
+static void test_thin(void)
+{
+  mlim_solid_change* change = malloc(sizeof *change);
+  uint64_t seed = 1;
+  size_t thin = 0;
+  size_t steps = 0;
+  for (int k = 0; k < 1000000; ++k)
+  {
+    const int is_ring = k & 1;
+    mlim_solid solid = make(1, is_ring, 0);
+    place(&solid, pow(10, -16 * random_unit(&seed)), k & 2, &seed);
+    if (count_wrong(&solid) == 0)
+    {
+      double volume;
+      thin += worst(&solid, &volume) <= 0;
+      const int done = is_ring ? mlim_exchange_edge(&solid, change, 0, 0)
+                               : mlim_exchange_face(&solid, change, 0, 0);
+      steps += done > 0;
+      CHECK_COUNT(count_wrong(&solid), 0);
+    }
+    mlim_solid_free(&solid);
+  }
+  CHECK(thin > 0 && steps > 0);
+  free(change);
+}
+
 int main(void)
 {
   test_shapes();
   test_bounds();
   test_flips();
+  test_thin();
   return check_result();
 }
