@@ -68,7 +68,11 @@ static inline double mlim_cubic_root(const mlim_cubic* f, double precision)
     double next = t - mlim_cubic_at(f, t) / slope;
     if (!(next > low && next < high))
     {
-      next = 0.5 * (low + high);
+      /* At the root Newton stands still, or steps back by a rounding. Not so at another end of [0, 1] that is a
+         root as well. */
+      const double off = next > t ? next - t : t - next;
+      const int is_there = off <= precision && (is_positive ? slope < 0 : slope > 0);
+      next = is_there ? t : 0.5 * (low + high);
     }
     const double moved = next > t ? next - t : t - next;
     t = next;
