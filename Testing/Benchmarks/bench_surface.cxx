@@ -52,6 +52,8 @@ const int least_for_slow = 500000;
 // Threads are compared on these.
 const int threads_from = 200000;
 const int threads_to = 210000;
+// A wall clock counts what else the machine does: the least of some runs.
+const int threads_runs = 3;
 // Numbers of vertices that differ less than this part are the same size.
 const double same_part = 0.1;
 const int scale_tries = 4;
@@ -157,8 +159,11 @@ public:
     this->Result.Ours.one = this->Demand.Ours.one;
     if (this->Result.Row.Aim >= threads_from && this->Result.Row.Aim <= threads_to)
     {
-      TakeLess(&this->Result.OurWall[0], this->RunOurs(1).total_wall, isFirst);
-      TakeLess(&this->Result.OurWall[1], this->RunOurs(2).total_wall, isFirst);
+      for (int k = 0; k < threads_runs; ++k)
+      {
+        TakeLess(&this->Result.OurWall[0], this->RunOurs(1).total_wall, isFirst && k == 0);
+        TakeLess(&this->Result.OurWall[1], this->RunOurs(2).total_wall, isFirst && k == 0);
+      }
     }
     if (isFirst)
     {
